@@ -1,0 +1,47 @@
+// How datagrams leave and arrive. Knows no message. Time, where it matters, is passed in.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fts::net {
+
+// The largest UDP payload that is sent: below the smallest path MTU met in practice (IPv6 1280 - 48).
+inline constexpr std::size_t kMaxDatagramBytes = 1200;
+
+// An IPv4 address is held as its v4-mapped IPv6 form.
+struct Address {
+    std::array<std::uint8_t, 16> ip{};
+    std::uint16_t port = 0;
+    friend auto operator<=>(const Address&, const Address&) = default;
+};
+std::string to_string(const Address& address);
+
+// "host:port", "host" (with the default port), "[v6]:port". Resolves names; the error says what is
+// wrong and what to do about it.
+struct Resolved {
+    std::optional<Address> address;
+    std::string error;
+};
+Resolved resolve(std::string_view host_and_port, std::uint16_t default_port);
+
+class Transport {
+  public:
+    virtual ~Transport() = default;
+
+    // Queues or sends one datagram of at most kMaxDatagramBytes. False when it was dropped here.
+    virtual bool send(const Address& to, std::span<const std::uint8_t> datagram) = 0;
+
+    using Receiver = std::function<void(const Address& from, std::span<const std::uint8_t> datagram)>;
+    // Hands over every datagram that has arrived by `now_s`; never blocks. Returns how many.
+    virtual std::size_t poll(double now_s, const Receiver& receiver) = 0;
+};
+
+}  // namespace fts::net

@@ -1,0 +1,72 @@
+// A scene is what is modelled, as a value: bodies, what bounds them, drag and restitution. It holds no
+// state of a running simulation (see world.h) and knows no player, tick rate, byte or clock.
+//
+// Units: metres, kilograms, seconds. A scene that comes from outside may hold anything; `validate`
+// must accept it before a World is made of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace fts::physics {
+
+template <typename Scalar>
+using Vec2 = Eigen::Matrix<Scalar, 2, 1>;
+using Vec2d = Vec2<double>;
+
+struct BodyDef {
+    Vec2d position_m = Vec2d::Zero();
+    Vec2d velocity_mps = Vec2d::Zero();
+    double radius_m = 0.5;
+    double mass_kg = 1.0;  // (0, inf]; an infinite mass is never moved by a collision
+};
+
+// Platforms: a body whose centre leaves one falls, at the exact time of the crossing, and is removed.
+// All are centred on the origin.
+struct Disc {
+    double radius_m = 0.0;
+};
+struct Rectangle {
+    Vec2d half_extents_m = Vec2d::Zero();
+};
+struct Ring {  // a disc with a concentric hole; a body may fall on either side
+    double inner_radius_m = 0.0;
+    double outer_radius_m = 0.0;
+};
+using Platform = std::variant<Disc, Rectangle, Ring>;
+
+// Elastic walls that keep each body's disc inside the box.
+struct Walls {
+    Vec2d min_m = Vec2d::Zero();
+    Vec2d max_m = Vec2d::Zero();
+};
+
+struct Scene {
+    std::vector<BodyDef> bodies;
+    std::optional<Walls> walls;
+    std::optional<Platform> platform;
+    double restitution = 1.0;  // [0, 1]
+};
+
+// What is wrong with a scene, in words that name field, value and remedy:
+// "body[3].radius_m is -1; give a finite radius above 0".
+struct SceneError {
+    std::string field;
+    std::string message;
+};
+
+std::optional<SceneError> validate(const Scene& scene);
+
+// Signed distance from a point to the nearest edge of the platform, metres; positive inside.
+double distance_to_edge_m(const Platform& platform, const Vec2d& point_m);
+// The point of the platform's edge nearest to `point_m`.
+Vec2d nearest_edge_point_m(const Platform& platform, const Vec2d& point_m);
+// Radius of the smallest disc about the origin that holds the whole platform.
+double bounding_radius_m(const Platform& platform);
+
+}  // namespace fts::physics

@@ -1,0 +1,139 @@
+// What client and server say to each other over the reliable ordered channel, as plain values, and the
+// two unreliable payloads. wire.h turns them into bytes and back; this file sees no Protobuf.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/game/input.h"
+#include "common/game/level.h"
+#include "common/game/upgrades.h"
+#include "common/physics/scene.h"
+#include "common/replication/snapshot.h"
+
+namespace fts::replication {
+
+// ---- client to server, reliable --------------------------------------------------------------------
+
+struct JoinRequest {
+    std::string name;       // cut to kMaxNameBytes, control characters removed, by the server
+    int arena = -1;         // -1: wherever there is room
+};
+struct BuyRequest {
+    std::uint64_t request_id = 0;  // unique per player for ever; the same id is never charged twice
+    game::Stat stat = game::Stat::kMass;
+    int tier = 0;                  // the tier the player has seen; a stale one is refused
+};
+struct ChatRequest {
+    std::string text;
+};
+struct ReadyRequest {};  // done shopping
+using ClientMessage = std::variant<JoinRequest, BuyRequest, ChatRequest, ReadyRequest>;
+
+// ---- server to client, reliable --------------------------------------------------------------------
+
+struct Welcome {
+    std::uint16_t player_id = 0;  // > 0
+    int arena = 0;
+    int tick_rate_hz = 0;
+    int snapshot_rate_hz = 0;
+    std::string server_name;
+};
+struct JoinRefused {
+    std::string reason;  // for people
+};
+struct LevelStarted {
+    int number = 0;
+    int level_count = 0;
+    std::string name;
+    std::string hint;
+    physics::Platform platform;
+    int ai_balls = 0;
+};
+enum class LevelOutcome : std::uint8_t { kCleared, kLost, kTimeUp, kCampaignComplete };
+struct LevelEnded {
+    int number = 0;
+    LevelOutcome outcome = LevelOutcome::kCleared;
+    int coins_earned = 0;  // by the receiving player in this level
+};
+struct PlayerInfo {
+    std::uint16_t player_id = 0;
+    std::string name;
+    std::uint8_t colour = 0;  // index into the palette
+    int knock_offs = 0, assists = 0, falls = 0, lives = 0;
+    int coins = 0;
+    bool ready = false;
+};
+struct Roster {  // all players of the arena, sorted by id; sent when anything in it changes
+    std::vector<PlayerInfo> players;
+};
+struct Wallet {  // the receiving player's, sent when it changes
+    int coins = 0;
+    game::Tiers tiers{};
+};
+enum class PurchaseOutcome : std::uint8_t {
+    kBought,
+    kAlreadyBought,  // this request id was settled before; nothing was charged again
+    kTooExpensive,
+    kLastTier,
+    kStalePrice,     // the tier is not the one the player has now
+    kShopClosed,
+    kStoreFailed,    // it could not be written down; nothing was charged
+};
+struct PurchaseResult {
+    std::uint64_t request_id = 0;
+    PurchaseOutcome outcome = PurchaseOutcome::kBought;
+};
+struct ChatLine {
+    std::uint16_t player_id = 0;  // 0: the server
+    std::string text;
+};
+struct KnockOff {
+    std::uint16_t victim_ball = 0;
+    std::uint16_t victim_player = 0;            // 0: an AI ball
+    struct Share {
+        std::uint16_t player_id = 0;
+        int coins = 0;
+        bool assist = false;
+    };
+    std::vector<Share> shares;                  // empty: nobody's doing
+};
+// One hit of the receiving player's own ball, in full doubles, so that a learner can check that
+// momentum and energy are conserved to the last bit.
+struct CollisionReport {
+    Tick tick = 0;
+    double time_in_tick_s = 0.0;
+    struct Side {
+        std::uint16_t ball = 0;
+        std::uint16_t player_id = 0;
+        double mass_kg = 0.0, radius_m = 0.0;
+        physics::Vec2d position_m, velocity_before_mps, velocity_after_mps;
+    };
+    Side own, other;
+    physics::Vec2d normal;  // unit, from other to own
+    double impulse_ns = 0.0;
+};
+using ServerMessage = std::variant<Welcome, JoinRefused, LevelStarted, LevelEnded, Roster, Wallet,
+                                   PurchaseResult, ChatLine, KnockOff, CollisionReport>;
+
+// ---- client to server, unreliable -------------------------------------------------------------------
+
+inline constexpr std::size_t kMaxInputsPerPacket = 32;
+
+struct InputPacket {
+    Tick acked_snapshot_tick = 0;       // the newest whole snapshot held; 0: none
+    std::uint32_t first_sequence = 0;   // of inputs[0]; consecutive
+    std::vector<game::InputCommand> inputs;  // oldest first, at most kMaxInputsPerPacket
+};
+
+// ---- server to client, unreliable -------------------------------------------------------------------
+
+struct SnapshotPacket {
+    std::uint32_t acked_input_sequence = 0;  // newest input the server has applied; 0: none
+    std::vector<std::uint8_t> part;          // delta.h
+};
+
+}  // namespace fts::replication
