@@ -1,5 +1,5 @@
-// A level of the campaign as a value. Read from text files by the server (server/match/level_file.h);
-// its platform travels to clients.
+// A level of the campaign as a value. Read from text files by the server
+// (server/match/level_file.h); its platform travels to clients.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ enum class Phase : std::uint8_t {
     kWaiting,    // nobody is here; the arena is paused
     kCountdown,  // balls stand on the platform, nothing moves
     kPlaying,
-    kShop,       // between levels, after a win or a loss
+    kShop,  // between levels, after a win or a loss
 };
 
 enum class Difficulty : std::uint8_t { kNovice, kEasy, kNormal, kHard, kExpert };
@@ -37,7 +37,7 @@ struct Level {
     std::string hint;  // one sentence a player reads during the countdown
     physics::Platform platform = physics::Disc{12.0};
     std::vector<AiGroup> ai;
-    int field_coins = 0;       // coins lying on the platform at the start
+    int field_coins = 0;  // coins lying on the platform at the start
     double time_limit_s = 120;
 };
 
