@@ -29,6 +29,8 @@ struct SessionConfig {
 
 enum class Status : std::uint8_t { kConnecting, kJoining, kPlaying, kEnded };
 
+inline constexpr std::size_t kMaxPendingNotices = 1024;
+
 // Things that happened, for a screen to show or a script to expect, in order.
 struct Notice {
     enum class Kind : std::uint8_t {
@@ -44,12 +46,20 @@ struct Notice {
 };
 
 struct SessionStats {
-    std::uint64_t snapshots_received = 0;   // whole ones
-    std::uint64_t snapshots_missed = 0;     // by tick numbers that never came
+    std::uint64_t snapshots_received = 0;  // whole ones
+    std::uint64_t snapshots_missed = 0;    // by tick numbers that never came in time
+    std::uint64_t snapshots_late = 0;      // of the missed: parts that came after a newer snapshot
     std::uint64_t snapshots_malformed = 0;
-    std::uint64_t frames = 0;               // views made while playing
+    std::uint64_t messages_malformed = 0;
+    std::uint64_t messages_unsent = 0;  // too long, or more than the channel holds
+    std::uint64_t frames = 0;           // views made while playing
     std::uint64_t frames_starved = 0;
-    std::uint64_t inputs_sent = 0;
+    std::uint64_t inputs_sent = 0;      // each once, however often repeated
+    std::uint64_t inputs_given_up = 0;  // not acknowledged within kMaxInputsPerPacket ticks
+    std::uint64_t inputs_skipped = 0;   // ticks not answered: `update` was called too rarely
+    std::uint64_t notices_dropped = 0;  // more than kMaxPendingNotices between two drains
+    std::uint64_t hits_dropped = 0;     // more than kMaxPendingHits before a view was made
+    std::uint64_t delay_limited = 0;    // arrivals too late for the longest interpolation delay
     net::LinkStats link;
 };
 
@@ -71,8 +81,8 @@ class Session {
     void leave(double now_s);
 
     Status status() const;
-    // Why it ended, in words for a person, with a remedy: "No answer from 10.0.0.1:7777. Is the server
-    // running, and UDP port 7777 open?"
+    // Why it ended, in words for a person, with a remedy: "No answer from 10.0.0.1:7777. Is the
+    // server running, and UDP port 7777 open?"
     const std::string& ended_because() const;
     net::DisconnectReason end_reason() const;
     // Known once connected; the caller pins it.

@@ -18,7 +18,7 @@ struct BallView {
     std::uint16_t id = 0;
     physics::Vec2d position_m = physics::Vec2d::Zero();  // interpolated
     physics::Vec2d velocity_mps = physics::Vec2d::Zero();
-    physics::Vec2d thrust = physics::Vec2d::Zero();      // |thrust| <= 1
+    physics::Vec2d thrust = physics::Vec2d::Zero();  // |thrust| <= 1
     double radius_m = 0.0;
     double mass_kg = 0.0;
     bool is_player = false;
@@ -44,9 +44,9 @@ struct HitView {
 
 struct LinkView {
     double rtt_s = 0.0;
-    double loss = 0.0;                  // [0, 1]
+    double loss = 0.0;  // [0, 1]
     double interpolation_delay_s = 0.0;
-    bool starved = false;               // this frame had no newer snapshot to draw towards
+    bool starved = false;  // this frame had no newer snapshot to draw towards
 };
 
 struct View {
@@ -57,7 +57,7 @@ struct View {
     std::optional<replication::LevelEnded> last_level_end;
     std::vector<BallView> balls;  // sorted by id
     std::vector<CoinView> coins;
-    std::vector<HitView> hits;    // that happened since the previous view was made
+    std::vector<HitView> hits;  // that happened since the previous view was made
     std::vector<replication::PlayerInfo> players;
     std::uint16_t own_player_id = 0;
     std::optional<std::size_t> own_ball;  // index into balls; empty while off the platform

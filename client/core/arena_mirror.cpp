@@ -1,0 +1,148 @@
+#include "client/core/arena_mirror.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "client/core/end_words.h"
+#include "client/core/interpolation.h"
+
+namespace fts::client {
+namespace {
+
+using replication::Snapshot;
+
+constexpr std::size_t kLevelsKept = 2;
+constexpr std::size_t kMaxLevelTextBytes = 200;
+
+physics::Vec2d metres(std::int32_t x, std::int32_t y) {
+    return {replication::dequantise(x, replication::kPositionStepM),
+            replication::dequantise(y, replication::kPositionStepM)};
+}
+
+std::vector<replication::PlayerInfo> with_printable_names(
+    std::vector<replication::PlayerInfo> players) {
+    for (replication::PlayerInfo& player : players) {
+        player.name = printable(player.name, game::kMaxNameBytes);
+    }
+    return players;
+}
+
+BallView ball_view(const BallPose& pose, std::uint16_t own_player_id,
+                   const std::vector<replication::PlayerInfo>& players) {
+    const replication::BallState& state = *pose.state;
+    BallView ball;
+    ball.id = state.id;
+    ball.position_m = pose.position_m;
+    ball.velocity_mps = pose.velocity_mps;
+    ball.thrust = game::thrust_of({state.thrust_x, state.thrust_y});
+    ball.radius_m = replication::dequantise(state.radius, replication::kRadiusStepM);
+    ball.mass_kg = replication::dequantise(state.mass, replication::kMassStepKg);
+    ball.is_player = state.kind == static_cast<std::uint8_t>(replication::BallKind::kPlayer);
+    ball.braking = state.brake;
+    ball.behaviour = static_cast<game::Behaviour>(state.behaviour);
+    ball.player_id = state.player_id;
+    ball.is_own = ball.is_player && own_player_id != 0 && state.player_id == own_player_id;
+    const auto player =
+        std::ranges::find(players, state.player_id, &replication::PlayerInfo::player_id);
+    if (ball.is_player && player != players.end()) {
+        ball.colour = player->colour;
+        ball.name = player->name;
+    }
+    return ball;
+}
+
+}  // namespace
+
+void ArenaMirror::apply(const replication::ServerMessage& message) {
+    if (const auto* welcome = std::get_if<replication::Welcome>(&message)) {
+        own_player_id_ = welcome->player_id;
+        tick_rate_hz_ = welcome->tick_rate_hz;
+    } else if (const auto* level = std::get_if<replication::LevelStarted>(&message)) {
+        levels_.push_back(*level);
+        levels_.back().name = printable(level->name, kMaxLevelTextBytes);
+        levels_.back().hint = printable(level->hint, kMaxLevelTextBytes);
+        if (levels_.size() > kLevelsKept) levels_.pop_front();
+    } else if (const auto* end = std::get_if<replication::LevelEnded>(&message)) {
+        last_level_end_ = *end;
+    } else if (const auto* roster = std::get_if<replication::Roster>(&message)) {
+        players_ = with_printable_names(roster->players);
+    } else if (const auto* wallet = std::get_if<replication::Wallet>(&message)) {
+        wallet_ = *wallet;
+    } else if (const auto* hit = std::get_if<replication::CollisionReport>(&message)) {
+        last_own_hit_ = *hit;
+    }
+}
+
+void ArenaMirror::add(std::shared_ptr<const Snapshot> snapshot) {
+    assert(snapshots_.empty() || snapshot->tick > newest_tick());
+    for (const replication::HitState& hit : snapshot->hits) {
+        if (pending_hits_.size() == kMaxPendingHits) {
+            pending_hits_.pop_front();
+            ++hits_dropped_count_;
+        }
+        pending_hits_.push_back(hit);
+    }
+    snapshots_.push_back(std::move(snapshot));
+    if (snapshots_.size() > kMaxHeldSnapshots) snapshots_.pop_front();
+}
+
+replication::Tick ArenaMirror::newest_tick() const {
+    return snapshots_.empty() ? 0 : snapshots_.back()->tick;
+}
+
+const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
+    const auto found = std::find_if(levels_.rbegin(), levels_.rend(),
+                                    [&](const auto& level) { return level.number == number; });
+    return found == levels_.rend() ? levels_.back() : *found;
+}
+
+View ArenaMirror::view_at(double server_time_s) {
+    View view;
+    view.own_player_id = own_player_id_;
+    view.players = players_;
+    view.coins_held = wallet_.coins;
+    view.tiers = wallet_.tiers;
+    view.last_level_end = last_level_end_;
+    view.last_own_hit = last_own_hit_;
+    if (!levels_.empty()) view.level = levels_.back();
+    if (snapshots_.empty()) return view;
+
+    view.server_time_s = server_time_s;
+    const double draw_tick = server_time_s * tick_rate_hz_;
+    // Only the newest snapshot at or before this moment, and what comes after it, are still needed.
+    while (snapshots_.size() > 1 && snapshots_[1]->tick <= draw_tick) snapshots_.pop_front();
+    const Snapshot& shown = *snapshots_.front();
+    view.phase = shown.phase;
+    if (shown.phase_end_tick != 0) {
+        view.phase_remaining_s = std::max(0.0, shown.phase_end_tick - draw_tick) / tick_rate_hz_;
+    }
+    if (!levels_.empty()) view.level = level_numbered(shown.level);
+    for (const replication::CoinState& coin : shown.coins) {
+        view.coins.push_back({coin.id, metres(coin.x, coin.y), coin.value_coins});
+    }
+    add_balls(view, draw_tick);
+    add_hits(view, draw_tick);
+    return view;
+}
+
+void ArenaMirror::add_balls(View& view, double draw_tick) const {
+    const Snapshot& from = *snapshots_.front();
+    const Snapshot& to = snapshots_.size() > 1 ? *snapshots_[1] : from;
+    for (const BallPose& pose : interpolate(from, to, draw_tick, tick_rate_hz_)) {
+        BallView ball = ball_view(pose, own_player_id_, players_);
+        if (ball.is_own) view.own_ball = view.balls.size();
+        view.balls.push_back(std::move(ball));
+    }
+}
+
+void ArenaMirror::add_hits(View& view, double draw_tick) {
+    while (!pending_hits_.empty() && pending_hits_.front().tick <= draw_tick) {
+        const replication::HitState& hit = pending_hits_.front();
+        view.hits.push_back({metres(hit.x, hit.y),
+                             replication::dequantise(hit.impulse, replication::kMassStepKg), hit.a,
+                             hit.b});
+        pending_hits_.pop_front();
+    }
+}
+
+}  // namespace fts::client

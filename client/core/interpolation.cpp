@@ -1,0 +1,67 @@
+#include "client/core/interpolation.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace fts::client {
+namespace {
+
+using replication::BallState;
+using replication::Snapshot;
+
+physics::Vec2d position_of(const BallState& ball) {
+    return {replication::dequantise(ball.x, replication::kPositionStepM),
+            replication::dequantise(ball.y, replication::kPositionStepM)};
+}
+
+physics::Vec2d velocity_of(const BallState& ball) {
+    return {replication::dequantise(ball.vx, replication::kVelocityStepMps),
+            replication::dequantise(ball.vy, replication::kVelocityStepMps)};
+}
+
+BallPose coasting(const BallState& ball, double span_s) {
+    const physics::Vec2d velocity_mps = velocity_of(ball);
+    return {&ball, position_of(ball) + velocity_mps * span_s, velocity_mps};
+}
+
+BallPose between(const BallState& from, const BallState& to, double share, double span_s) {
+    const physics::Vec2d p0 = position_of(from), p1 = position_of(to);
+    const physics::Vec2d v0 = velocity_of(from), v1 = velocity_of(to);
+    const double reach_m = 2.0 * std::max(v0.norm(), v1.norm()) * span_s + kTeleportSlackM;
+    if ((p1 - p0).norm() > reach_m) return coasting(from, 0.0);
+    return {&from, p0 + (p1 - p0) * share, v0 + (v1 - v0) * share};
+}
+
+std::vector<BallPose> all_coasting(const Snapshot& snapshot, double span_s) {
+    std::vector<BallPose> poses;
+    poses.reserve(snapshot.balls.size());
+    for (const BallState& ball : snapshot.balls) poses.push_back(coasting(ball, span_s));
+    return poses;
+}
+
+}  // namespace
+
+std::vector<BallPose> interpolate(const Snapshot& from, const Snapshot& to, double draw_tick,
+                                  int tick_rate_hz) {
+    assert(from.tick <= to.tick && tick_rate_hz > 0);
+    const double rate = tick_rate_hz;
+    if (draw_tick >= to.tick) {
+        return all_coasting(to, std::min((draw_tick - to.tick) / rate, kMaxExtrapolationS));
+    }
+    if (draw_tick <= from.tick) return all_coasting(from, 0.0);
+
+    const double since_from_s = (draw_tick - from.tick) / rate;
+    const double span_s = (to.tick - from.tick) / rate;
+    std::vector<BallPose> poses;
+    poses.reserve(from.balls.size());
+    auto target = to.balls.begin();
+    for (const BallState& ball : from.balls) {
+        while (target != to.balls.end() && target->id < ball.id) ++target;
+        const bool in_both = target != to.balls.end() && target->id == ball.id;
+        poses.push_back(in_both ? between(ball, *target, since_from_s / span_s, span_s)
+                                : coasting(ball, std::min(since_from_s, kMaxExtrapolationS)));
+    }
+    return poses;
+}
+
+}  // namespace fts::client

@@ -1,0 +1,316 @@
+#include "client/core/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <random>
+
+#include "client/core/arena_mirror.h"
+#include "client/core/end_words.h"
+#include "client/core/input_queue.h"
+#include "client/core/server_clock.h"
+#include "common/game/rules.h"
+#include "common/replication/delta.h"
+#include "common/replication/snapshot_history.h"
+#include "common/replication/wire.h"
+
+namespace fts::client {
+namespace {
+
+using replication::Snapshot;
+
+// A stall longer than this is not made up for with stale inputs.
+constexpr int kMaxCatchUpTicks = 15;
+// Rates that a server may announce; anything else is a broken one.
+constexpr int kMaxRateHz = 1000;
+// Share that one snapshot has in the running loss: a memory of about two seconds at 30 Hz.
+constexpr double kLossShare = 1.0 / 60.0;
+
+// Unique among all purchases of a player for ever, without a memory of earlier ones.
+std::uint64_t random_request_id() {
+    std::random_device entropy;
+    const std::uint64_t high = entropy(), low = entropy();
+    return ((high << 32U) | low) >> 1U | 1U;
+}
+
+std::optional<Notice::Kind> notice_kind_of(const replication::ServerMessage& message) {
+    using Kind = Notice::Kind;
+    if (std::holds_alternative<replication::LevelStarted>(message)) return Kind::kLevelStarted;
+    if (std::holds_alternative<replication::LevelEnded>(message)) return Kind::kLevelEnded;
+    if (std::holds_alternative<replication::KnockOff>(message)) return Kind::kKnockOff;
+    if (std::holds_alternative<replication::PurchaseResult>(message)) return Kind::kPurchase;
+    if (std::holds_alternative<replication::ChatLine>(message)) return Kind::kChat;
+    if (std::holds_alternative<replication::CollisionReport>(message)) return Kind::kOwnHit;
+    return std::nullopt;
+}
+
+}  // namespace
+
+struct Session::Impl {
+    Impl(const SessionConfig& session_config, net::Transport& session_transport)
+        : config(session_config),
+          transport(session_transport),
+          dialer({config.key, config.server, config.protocol_version, config.pinned_server_key},
+                 transport) {}
+
+    void receive_datagrams(double now_s);
+    void handle(const net::Event& event, double now_s);
+    void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
+    void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
+    void take_snapshot(Snapshot&& snapshot, double now_s);
+    void count_missed_before(replication::Tick tick);
+    void welcome(const replication::Welcome& message, double now_s);
+    void send_due_inputs(double now_s);
+    void send(const replication::ClientMessage& message);
+    void notice(Notice::Kind kind, const replication::ServerMessage& message);
+    void end(const net::Disconnected& what);
+
+    SessionConfig config;
+    net::Transport& transport;
+    net::Dialer dialer;
+    Status status = Status::kConnecting;
+    std::string ended_because;
+    net::DisconnectReason end_reason = net::DisconnectReason::kClosed;
+    std::optional<net::PublicKey> server_key;
+
+    replication::SnapshotAssembler assembler;
+    replication::SnapshotHistory history;
+    ArenaMirror arena;
+    ServerClock clock;
+    double ticks_per_snapshot = double(game::kTickRateHz) / game::kSnapshotRateHz;
+
+    InputQueue inputs;
+    game::InputCommand held_input;
+    double next_input_s = 0.0;
+    std::uint64_t next_request_id = random_request_id();
+
+    std::deque<Notice> notices;
+    double recent_loss = 0.0;
+    SessionStats stats;
+};
+
+void Session::Impl::receive_datagrams(double now_s) {
+    transport.poll(now_s, [&](const net::Address& from, std::span<const std::uint8_t> datagram) {
+        if (status != Status::kEnded) dialer.receive(from, datagram, now_s);
+    });
+}
+
+void Session::Impl::handle(const net::Event& event, double now_s) {
+    if (status == Status::kEnded) return;
+    if (const auto* connected = std::get_if<net::Connected>(&event)) {
+        server_key = connected->peer;
+        status = Status::kJoining;
+        send(replication::JoinRequest{config.name, config.arena});
+    } else if (const auto* gone = std::get_if<net::Disconnected>(&event)) {
+        end(*gone);
+    } else if (const auto* message = std::get_if<net::ReliableMessage>(&event)) {
+        handle_message(message->bytes, now_s);
+    } else if (const auto* payload = std::get_if<net::UnreliablePayload>(&event)) {
+        handle_snapshot_part(payload->bytes, now_s);
+    }
+}
+
+void Session::Impl::handle_message(const std::vector<std::uint8_t>& bytes, double now_s) {
+    const auto message = replication::decode_server_message(bytes);
+    if (!message) {
+        ++stats.messages_malformed;
+        return;
+    }
+    if (const auto* refused = std::get_if<replication::JoinRefused>(&*message)) {
+        dialer.close("not let in");
+        end({0, net::DisconnectReason::kRefused, refused->reason});
+        return;
+    }
+    if (const auto* hello = std::get_if<replication::Welcome>(&*message)) {
+        welcome(*hello, now_s);
+        return;
+    }
+    arena.apply(*message);
+    if (const auto kind = notice_kind_of(*message)) notice(*kind, *message);
+}
+
+void Session::Impl::welcome(const replication::Welcome& message, double now_s) {
+    const auto plausible = [](int rate_hz) { return rate_hz > 0 && rate_hz <= kMaxRateHz; };
+    if (!plausible(message.tick_rate_hz) || !plausible(message.snapshot_rate_hz)) {
+        const std::string detail = "tick rate " + std::to_string(message.tick_rate_hz) +
+                                   " Hz, snapshot rate " +
+                                   std::to_string(message.snapshot_rate_hz) + " Hz";
+        dialer.close(detail);
+        end({0, net::DisconnectReason::kProtocolError, detail});
+        return;
+    }
+    arena.apply(message);
+    ticks_per_snapshot = double(message.tick_rate_hz) / message.snapshot_rate_hz;
+    if (status == Status::kJoining) {
+        status = Status::kPlaying;
+        next_input_s = now_s;
+    }
+}
+
+void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s) {
+    const auto packet = replication::decode_snapshot_packet(bytes);
+    const auto header = packet ? replication::peek_part(packet->part) : std::nullopt;
+    if (!header) {
+        ++stats.snapshots_malformed;
+        return;
+    }
+    inputs.acknowledge(packet->acked_input_sequence);
+    if (arena.has_snapshot() && header->tick <= arena.newest_tick()) {
+        if (!history.find(header->tick)) ++stats.snapshots_late;
+        return;
+    }
+    static const Snapshot kNothing;
+    const auto held = history.find(header->baseline_tick);
+    // A baseline that is no longer held makes the part unreadable; the gap shows up as missed.
+    if (!held && header->baseline_tick != 0) return;
+    auto whole = assembler.add(held ? *held : kNothing, packet->part);
+    if (whole) take_snapshot(std::move(*whole), now_s);
+}
+
+void Session::Impl::count_missed_before(replication::Tick tick) {
+    if (!arena.has_snapshot()) return;
+    const double intervals = (tick - arena.newest_tick()) / ticks_per_snapshot;
+    const auto missed = std::max<std::int64_t>(0, std::llround(intervals) - 1);
+    stats.snapshots_missed += static_cast<std::uint64_t>(missed);
+    const double kept = std::pow(1.0 - kLossShare, static_cast<double>(missed));
+    recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
+}
+
+void Session::Impl::take_snapshot(Snapshot&& snapshot, double now_s) {
+    if (!replication::is_canonical(snapshot)) {
+        ++stats.snapshots_malformed;
+        return;
+    }
+    count_missed_before(snapshot.tick);
+    ++stats.snapshots_received;
+    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), now_s);
+    const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
+    history.add(shared);
+    arena.add(shared);
+}
+
+void Session::Impl::send_due_inputs(double now_s) {
+    if (status != Status::kPlaying || now_s < next_input_s) return;
+    const double tick_s = 1.0 / arena.tick_rate_hz();
+    const double due = std::floor((now_s - next_input_s) / tick_s) + 1.0;
+    const double answered = std::min(due, double(kMaxCatchUpTicks));
+    stats.inputs_skipped += static_cast<std::uint64_t>(due - answered);
+    next_input_s += due * tick_s;
+    for (int i = 0; i < static_cast<int>(answered); ++i) {
+        inputs.push(held_input);
+        ++stats.inputs_sent;
+    }
+    dialer.send_unreliable(replication::encode(inputs.packet(arena.newest_tick())));
+}
+
+void Session::Impl::send(const replication::ClientMessage& message) {
+    if (!dialer.send_reliable(replication::encode(message))) ++stats.messages_unsent;
+}
+
+void Session::Impl::notice(Notice::Kind kind, const replication::ServerMessage& message) {
+    if (notices.size() == kMaxPendingNotices) {
+        notices.pop_front();
+        ++stats.notices_dropped;
+    }
+    notices.push_back({kind, message});
+    if (auto* line = std::get_if<replication::ChatLine>(&notices.back().message)) {
+        line->text = printable(line->text, game::kMaxChatBytes);
+    }
+}
+
+void Session::Impl::end(const net::Disconnected& what) {
+    status = Status::kEnded;
+    end_reason = what.reason;
+    ended_because = words_for(what, config.server, config.protocol_version, net::kDefaultTimeoutS);
+}
+
+Session::Session(const SessionConfig& config, net::Transport& transport)
+    : impl_(std::make_unique<Impl>(config, transport)) {}
+Session::~Session() = default;
+
+void Session::update(double now_s) {
+    impl_->receive_datagrams(now_s);
+    if (impl_->status == Status::kEnded) return;
+    impl_->dialer.update(now_s);
+    for (const net::Event& event : impl_->dialer.drain_events()) impl_->handle(event, now_s);
+    impl_->send_due_inputs(now_s);
+}
+
+void Session::set_input(const game::InputCommand& input) {
+    impl_->held_input = input;
+}
+
+std::uint64_t Session::buy(game::Stat stat) {
+    const std::uint64_t id = impl_->next_request_id++;
+    if (impl_->status == Status::kPlaying) {
+        const int tier = impl_->arena.tiers()[static_cast<std::size_t>(stat)];
+        impl_->send(replication::BuyRequest{id, stat, tier});
+    }
+    return id;
+}
+
+void Session::chat(const std::string& text) {
+    if (impl_->status == Status::kPlaying) impl_->send(replication::ChatRequest{text});
+}
+
+void Session::ready() {
+    if (impl_->status == Status::kPlaying) impl_->send(replication::ReadyRequest{});
+}
+
+void Session::leave(double now_s) {
+    if (impl_->status == Status::kEnded) return;
+    impl_->dialer.close("left");
+    // Lets a transport that holds datagrams back move the goodbye on.
+    impl_->receive_datagrams(now_s);
+    impl_->status = Status::kEnded;
+    impl_->end_reason = net::DisconnectReason::kClosed;
+    impl_->ended_because = "You left " + net::to_string(impl_->config.server) + ".";
+}
+
+Status Session::status() const {
+    return impl_->status;
+}
+const std::string& Session::ended_because() const {
+    return impl_->ended_because;
+}
+net::DisconnectReason Session::end_reason() const {
+    return impl_->end_reason;
+}
+std::optional<net::PublicKey> Session::server_key() const {
+    return impl_->server_key;
+}
+
+View Session::view(double now_s) {
+    Impl& self = *impl_;
+    const bool drawing = self.clock.started();
+    View view = self.arena.view_at(drawing ? self.clock.draw_time_s(now_s) : 0.0);
+    const net::LinkStats link = self.dialer.stats();
+    view.link.rtt_s = link.rtt_s;
+    view.link.loss = std::max(link.loss, self.recent_loss);
+    view.link.interpolation_delay_s = self.clock.delay_s();
+    view.link.starved =
+        drawing && view.server_time_s * self.arena.tick_rate_hz() > self.arena.newest_tick();
+    if (drawing && self.status == Status::kPlaying) {
+        ++self.stats.frames;
+        if (view.link.starved) ++self.stats.frames_starved;
+    }
+    return view;
+}
+
+std::vector<Notice> Session::drain_notices() {
+    std::vector<Notice> drained(impl_->notices.begin(), impl_->notices.end());
+    impl_->notices.clear();
+    return drained;
+}
+
+SessionStats Session::stats() const {
+    SessionStats stats = impl_->stats;
+    stats.snapshots_malformed += impl_->assembler.malformed_count();
+    stats.inputs_given_up = impl_->inputs.given_up_count();
+    stats.hits_dropped = impl_->arena.hits_dropped_count();
+    stats.delay_limited = impl_->clock.delay_limited_count();
+    stats.link = impl_->dialer.stats();
+    return stats;
+}
+
+}  // namespace fts::client
