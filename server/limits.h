@@ -1,0 +1,69 @@
+// Every fixed limit of the server, in one place. Reaching one is counted or logged, never silent.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "common/game/rules.h"
+#include "common/net/connection.h"
+#include "common/replication/messages.h"
+#include "common/replication/snapshot_history.h"
+
+namespace fts::server {
+
+// ---- the process
+// ------------------------------------------------------------------------------------
+
+inline constexpr int kMaxArenas = 16;
+// Connections beyond the players' places, so that a full server can say so, and a player who comes
+// back is let in before the old session has timed out.
+inline constexpr std::size_t kSpareConnections = 16;
+inline constexpr std::size_t kMaxServerNameBytes = 48;
+
+// ---- ticks
+// ------------------------------------------------------------------------------------------
+
+// How many late ticks are made up for at once; time lost beyond that is dropped.
+inline constexpr int kMaxCatchUpTicks = 5;
+inline constexpr double kOverrunNoticeEveryS = 1.0;
+
+inline constexpr int kTicksPerSnapshot = game::kTickRateHz / game::kSnapshotRateHz;
+static_assert(kTicksPerSnapshot * game::kSnapshotRateHz == game::kTickRateHz);
+
+// ---- one client
+// -------------------------------------------------------------------------------------
+
+inline constexpr double kJoinTimeoutS = 10.0;    // from the handshake to a join request
+inline constexpr double kLoadTimeoutS = 10.0;    // from a join request to the player's record
+inline constexpr double kRefusalLingersS = 1.0;  // so that the reason arrives before the goodbye
+
+// Inputs that wait for their tick: 8 ticks, 133 ms of jitter.
+inline constexpr std::size_t kMaxQueuedInputs = 8;
+// An input further ahead than this is not one a client can have come to: a minute of ticks.
+inline constexpr std::uint32_t kMaxInputLead = 60 * game::kTickRateHz;
+// When the queue has not been empty for this long, one input is skipped to shorten the delay.
+inline constexpr int kInputSlackWindowTicks = game::kTickRateHz;
+// A player from whom nothing comes for this long lets go of the controls.
+inline constexpr int kInputSilenceTicks = game::kTickRateHz / 2;
+static_assert(kMaxQueuedInputs <= replication::kMaxInputsPerPacket);
+
+inline constexpr double kInputPacketsPerS = 2.0 * game::kTickRateHz;
+inline constexpr double kInputPacketBurst = 60.0;
+inline constexpr double kChatLinesPerS = 1.0;
+inline constexpr double kChatBurst = 4.0;
+inline constexpr double kRequestsPerS = 20.0;  // purchases, ready, and everything else reliable
+inline constexpr double kRequestBurst = 40.0;
+
+// Payloads that are not understood, from a peer whose every packet is authenticated: not an
+// accident.
+inline constexpr int kMaxMalformedPayloads = 8;
+
+// ---- ledger
+// -----------------------------------------------------------------------------------------
+
+// Beyond it the game pauses until the store writes again: 25 MB, hours of a busy server's coins.
+inline constexpr std::size_t kMaxUnwrittenTransactions = 200'000;
+inline constexpr std::size_t kMaxTransactionsPerCommit = 4096;
+inline constexpr std::size_t kMaxWaitingLoads = 256;
+
+}  // namespace fts::server
