@@ -1,10 +1,11 @@
-// A scene is what is modelled, as a value: bodies, what bounds them, drag and restitution. It holds no
-// state of a running simulation (see world.h) and knows no player, tick rate, byte or clock.
+// A scene is what is modelled, as a value: bodies, what bounds them, drag and restitution. It holds
+// no state of a running simulation (see world.h) and knows no player, tick rate, byte or clock.
 //
 // Units: metres, kilograms, seconds. A scene that comes from outside may hold anything; `validate`
 // must accept it before a World is made of it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,8 +27,8 @@ struct BodyDef {
     double mass_kg = 1.0;  // (0, inf]; an infinite mass is never moved by a collision
 };
 
-// Platforms: a body whose centre leaves one falls, at the exact time of the crossing, and is removed.
-// All are centred on the origin.
+// Platforms: a body whose centre leaves one falls, at the exact time of the crossing, and is
+// removed. All are centred on the origin.
 struct Disc {
     double radius_m = 0.0;
 };
@@ -61,6 +62,24 @@ struct SceneError {
 };
 
 std::optional<SceneError> validate(const Scene& scene);
+// One body alone against the scene's boundary; the scene's own bodies are not looked at. `name` is
+// how the message calls it.
+std::optional<SceneError> validate(const BodyDef& body, const Scene& scene,
+                                   const std::string& name);
+
+// What a scene may hold. Within these no square overflows, in single precision either.
+inline constexpr double kMaxCoordinateM = 1e9;
+inline constexpr double kMaxSpeedMps = 1e9;
+inline constexpr double kMinRadiusM = 1e-6;
+inline constexpr double kMaxRadiusM = 1e8;
+inline constexpr double kMinMassKg = 1e-9;
+inline constexpr double kMaxMassKg = 1e15;  // or infinite
+inline constexpr std::size_t kMaxBodies = 1'000'000;
+// Bodies may touch: an overlap up to this part of the sum of radii is round-off and accepted.
+inline constexpr double kTouchTolerance = 1e-12;
+// A box must be wider than its largest ball by this part of the ball's radius, or the ball would
+// hit both walls without end.
+inline constexpr double kMinWallClearance = 0.01;
 
 // Signed distance from a point to the nearest edge of the platform, metres; positive inside.
 double distance_to_edge_m(const Platform& platform, const Vec2d& point_m);

@@ -1,15 +1,15 @@
 // World: the state of one scene and `step`, which advances it by one tick.
 //
 // A tick of length h is kick(h/2), drift(h), kick(h/2) (Strang splitting). Kick applies each body's
-// Control: thrust and linear drag, integrated exactly, so that top speed does not depend on the tick
-// rate. Drift is straight-line motion with elastic collisions at exact times of impact in time order,
-// and falls at the exact time the centre crosses the platform's edge.
+// Control: thrust and linear drag, integrated exactly, so that top speed does not depend on the
+// tick rate. Drift is straight-line motion with elastic collisions at exact times of impact in time
+// order, and falls at the exact time the centre crosses the platform's edge.
 //
-// Deterministic: the same scene, calls and spans give the same bits on every compiler and optimisation
-// level. Not thread-safe: one thread at a time. No allocation after warm-up.
+// Deterministic: the same scene, calls and spans give the same bits on every compiler and
+// optimisation level. Not thread-safe: one thread at a time. No allocation after warm-up.
 //
-// Bodies keep their BodyId for life; a removed id is never valid again (generation). Iteration order is
-// ascending slot index, which does not depend on addresses.
+// Bodies keep their BodyId for life; a removed id is never valid again (generation). Iteration
+// order is ascending slot index, which does not depend on addresses.
 #pragma once
 
 #include <cstdint>
@@ -17,73 +17,18 @@
 #include <optional>
 #include <span>
 
+#include "common/physics/body.h"
+#include "common/physics/record.h"
 #include "common/physics/scene.h"
 
 namespace fts::physics {
 
-struct BodyId {
-    std::uint32_t index = 0;
-    std::uint32_t generation = 0;
-    friend auto operator<=>(const BodyId&, const BodyId&) = default;
-};
-
-// What accelerates a body during a kick: dv/dt = acceleration - drag * v.
-template <typename Scalar>
-struct Control {
-    Vec2<Scalar> acceleration_mps2 = Vec2<Scalar>::Zero();
-    Scalar drag_per_s = Scalar(0);  // >= 0; terminal speed is |acceleration| / drag
-};
-
-template <typename Scalar>
-struct BodyView {
-    BodyId id;
-    Vec2<Scalar> position_m;
-    Vec2<Scalar> velocity_mps;
-    Scalar radius_m;
-    Scalar mass_kg;
-};
-
-// One elastic hit that happened in the last step. `b` is empty when `a` hit a wall.
-template <typename Scalar>
-struct Contact {
-    BodyId a;
-    std::optional<BodyId> b;
-    Scalar time_s;           // since the start of the step, [0, h]
-    Vec2<Scalar> point_m;    // where the surfaces touched
-    Vec2<Scalar> normal;     // unit, from b (or the wall) towards a
-    Scalar impulse_ns;       // > 0, given to a along the normal
-    Vec2<Scalar> position_a_m, position_b_m;
-    Vec2<Scalar> velocity_a_before_mps, velocity_a_after_mps;
-    Vec2<Scalar> velocity_b_before_mps, velocity_b_after_mps;  // zero for a wall
-    Scalar mass_a_kg, mass_b_kg;                               // b infinite for a wall
-};
-
-// A body that left the platform in the last step; it is no longer in the world.
-template <typename Scalar>
-struct Fall {
-    BodyId id;
-    Scalar time_s;
-    Vec2<Scalar> position_m;
-    Vec2<Scalar> velocity_mps;
-};
-
-// Running sums over all collisions since the world was made.
-struct CollisionAudit {
-    std::uint64_t ball_collisions = 0;
-    std::uint64_t wall_collisions = 0;
-    // Largest relative change that a single ball-ball collision made to the pair's kinetic energy and
-    // (relative to |p1| + |p2|) momentum; exactly conserved up to round-off when restitution is 1.
-    double worst_energy_error = 0.0;
-    double worst_momentum_error = 0.0;
-    // Sum of the signed energy changes of all collisions, over the sum of the pairs' energies.
-    double energy_change_j = 0.0;
-    double energy_seen_j = 0.0;
-};
-
 struct StepReport {
-    std::uint32_t events = 0;      // collisions and falls processed
-    bool overrun = false;          // the event budget ran out before the end of the tick ...
-    double unspent_time_s = 0.0;   // ... and this much of the tick was not simulated; the state is valid
+    std::uint32_t events = 0;  // collisions and falls processed
+    // The event budget ran out before the end of the tick, and this much of the tick was not
+    // simulated; the state is valid.
+    bool overrun = false;
+    double unspent_time_s = 0.0;
 };
 
 template <typename Scalar>

@@ -1,0 +1,29 @@
+// What is conserved, measured; and a fingerprint of a state.
+#pragma once
+
+#include <cstdint>
+
+#include "common/physics/bodies.h"
+#include "common/physics/record.h"
+
+namespace fts::physics {
+
+// Adds one collision to the running sums.
+template <typename Scalar>
+void account(const Contact<Scalar>& contact, CollisionAudit& audit);
+
+// Sums over finite masses, in double, ascending by index.
+template <typename Scalar>
+double kinetic_energy_j(const Bodies<Scalar>& bodies);
+template <typename Scalar>
+Vec2d momentum_ns(const Bodies<Scalar>& bodies);
+
+// How deep the worst pair overlaps, metres; 0 when none does. Looks at all pairs.
+template <typename Scalar>
+double deepest_penetration_m(const Bodies<Scalar>& bodies);
+
+// FNV-1a over the bits of every living body's index, position, velocity, radius and mass.
+template <typename Scalar>
+std::uint64_t state_hash(const Bodies<Scalar>& bodies);
+
+}  // namespace fts::physics

@@ -1,0 +1,36 @@
+// What a collision does to two velocities, in vector form, without angles: with n the unit line of
+// centres from the second to the first and u = (v1 - v2).n < 0,
+//
+//     J = -(1 + e) u m1 m2 / (m1 + m2),   v1 += J/m1 n,   v2 -= J/m2 n.
+//
+// Computed along the line of centres d itself, as J n = -(1 + e) mu (w.d / d.d) d: the length of d
+// cancels, so that energy does not depend on how well n is normalised.
+#pragma once
+
+#include <optional>
+
+#include "common/physics/scene.h"
+
+namespace fts::physics {
+
+template <typename Scalar>
+struct Impact {
+    Vec2<Scalar> normal;                          // unit, from the second towards the first
+    Scalar impulse_ns;                            // > 0
+    Vec2<Scalar> velocity_1_mps, velocity_2_mps;  // afterwards
+};
+
+template <typename Scalar>
+struct Mover {
+    Vec2<Scalar> position_m;
+    Vec2<Scalar> velocity_mps;
+    Scalar mass_kg;  // infinite: not moved by the impact
+};
+
+// Empty when the two do not approach, or are both infinitely heavy: such pairs pass through each
+// other.
+template <typename Scalar>
+std::optional<Impact<Scalar>> impact(const Mover<Scalar>& first, const Mover<Scalar>& second,
+                                     Scalar restitution);
+
+}  // namespace fts::physics

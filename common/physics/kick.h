@@ -1,0 +1,16 @@
+// A kick: for `span_s`, every body's velocity follows dv/dt = acceleration - drag * v while it
+// stays where it is. Exact, so that two kicks of half the span are one of the whole, and top speed
+// does not depend on the tick rate.
+#pragma once
+
+#include "common/physics/bodies.h"
+
+namespace fts::physics {
+
+template <typename Scalar>
+void kick(Bodies<Scalar>& bodies, Scalar span_s);
+
+extern template void kick<double>(Bodies<double>&, double);
+extern template void kick<float>(Bodies<float>&, float);
+
+}  // namespace fts::physics

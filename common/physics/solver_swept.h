@@ -1,0 +1,34 @@
+// The swept solver: finds the exact times of impact inside the span and processes them in time
+// order (at equal times: collisions, walls, falls, and lower indices first), so that nothing
+// tunnels at any speed.
+//
+// Each body is moved only when something happens to it. After a collision only its two partners are
+// predicted anew; what was predicted for them before is recognised as stale by their event counts.
+//
+// Two bodies that have just hit each other move apart and cannot meet again before something else
+// happens to one of them; such a pair is not predicted, so that round-off never makes a pair
+// collide twice at one instant. After moving to the time of impact, which is only as fine as the
+// clock, a pair is moved on along its own velocities by at most kClockSlack of round-off until it
+// just touches; no velocity changes, so that energy and momentum do not.
+//
+// The number of events of one drift is bounded by event_budget(). When more are due the drift stops
+// at the time of the last one processed, at which nothing overlaps, and says so.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "common/physics/solver.h"
+
+namespace fts::physics {
+
+inline constexpr std::uint32_t kBaseEventBudget = 4096;
+inline constexpr std::uint32_t kEventBudgetPerBody = 64;
+
+std::uint32_t event_budget(std::size_t bodies);
+
+template <typename Scalar>
+std::unique_ptr<Solver<Scalar>> make_swept_solver();
+
+}  // namespace fts::physics

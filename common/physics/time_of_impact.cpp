@@ -1,0 +1,100 @@
+#include "common/physics/time_of_impact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fts::physics {
+namespace {
+
+template <typename Scalar>
+Scalar cross(const Vec2<Scalar>& a, const Vec2<Scalar>& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+// Half the chord that a line at distance `offset_m` from the centre cuts from a circle; NaN-free.
+template <typename Scalar>
+Scalar half_chord(Scalar radius_m, Scalar offset_m) {
+    return std::sqrt(std::max(Scalar(0), (radius_m - offset_m) * (radius_m + offset_m)));
+}
+
+template <typename Scalar>
+Scalar time_until_outside_disc(Scalar radius_m, const Vec2<Scalar>& position_m,
+                               const Vec2<Scalar>& velocity_mps) {
+    const Scalar distance = position_m.norm();
+    if (distance > radius_m) return Scalar(0);
+    const Scalar speed = velocity_mps.norm();
+    if (!(speed > Scalar(0))) return kNever<Scalar>;
+    const Scalar along = position_m.dot(velocity_mps) / speed;
+    const Scalar chord = half_chord(radius_m, std::abs(cross(position_m, velocity_mps)) / speed);
+    if (along <= Scalar(0)) return (chord - along) / speed;
+    return (radius_m - distance) * (radius_m + distance) / ((chord + along) * speed);
+}
+
+template <typename Scalar>
+Scalar time_until_edge_of(const Disc& disc, const Vec2<Scalar>& position_m,
+                          const Vec2<Scalar>& velocity_mps) {
+    return time_until_outside_disc(static_cast<Scalar>(disc.radius_m), position_m, velocity_mps);
+}
+
+template <typename Scalar>
+Scalar time_until_edge_of(const Ring& ring, const Vec2<Scalar>& position_m,
+                          const Vec2<Scalar>& velocity_mps) {
+    const Scalar inner = static_cast<Scalar>(ring.inner_radius_m);
+    if (position_m.norm() < inner) return Scalar(0);
+    return std::min(time_until_contact(position_m, velocity_mps, inner),
+                    time_until_outside_disc(static_cast<Scalar>(ring.outer_radius_m), position_m,
+                                            velocity_mps));
+}
+
+template <typename Scalar>
+Scalar time_until_edge_of(const Rectangle& rectangle, const Vec2<Scalar>& position_m,
+                          const Vec2<Scalar>& velocity_mps) {
+    Scalar first = kNever<Scalar>;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Scalar half = static_cast<Scalar>(rectangle.half_extents_m[axis]);
+        if (std::abs(position_m[axis]) > half) return Scalar(0);
+        first = std::min({first, time_until_wall(half - position_m[axis], velocity_mps[axis]),
+                          time_until_wall(half + position_m[axis], -velocity_mps[axis])});
+    }
+    return first;
+}
+
+}  // namespace
+
+template <typename Scalar>
+Scalar time_until_contact(const Vec2<Scalar>& separation_m,
+                          const Vec2<Scalar>& relative_velocity_mps, Scalar reach_m) {
+    const Scalar rate = separation_m.dot(relative_velocity_mps);
+    if (!(rate < Scalar(0))) return kNever<Scalar>;
+    const Scalar distance = separation_m.norm();
+    if (distance <= reach_m) return Scalar(0);
+    const Scalar speed = relative_velocity_mps.norm();
+    if (!(speed > Scalar(0))) return kNever<Scalar>;
+    const Scalar passing = std::abs(cross(separation_m, relative_velocity_mps)) / speed;
+    if (passing > reach_m) return kNever<Scalar>;
+    const Scalar chord = half_chord(reach_m, passing);
+    return (distance - reach_m) * (distance + reach_m) / ((chord - rate / speed) * speed);
+}
+
+template <typename Scalar>
+Scalar time_until_wall(Scalar gap_m, Scalar closing_speed_mps) {
+    if (!(closing_speed_mps > Scalar(0))) return kNever<Scalar>;
+    return gap_m > Scalar(0) ? gap_m / closing_speed_mps : Scalar(0);
+}
+
+template <typename Scalar>
+Scalar time_until_edge(const Platform& platform, const Vec2<Scalar>& position_m,
+                       const Vec2<Scalar>& velocity_mps) {
+    return std::visit(
+        [&](const auto& shape) { return time_until_edge_of(shape, position_m, velocity_mps); },
+        platform);
+}
+
+template double time_until_contact(const Vec2<double>&, const Vec2<double>&, double);
+template float time_until_contact(const Vec2<float>&, const Vec2<float>&, float);
+template double time_until_wall(double, double);
+template float time_until_wall(float, float);
+template double time_until_edge(const Platform&, const Vec2<double>&, const Vec2<double>&);
+template float time_until_edge(const Platform&, const Vec2<float>&, const Vec2<float>&);
+
+}  // namespace fts::physics
