@@ -59,8 +59,8 @@ leave() {
     for action in "${on_exit[@]}"; do "$action"; done
 }
 trap leave EXIT
-trap 'exit 130' INT
-trap 'exit 143' TERM HUP
+trap 'printf "\nStopped.\n"; exit 130' INT
+trap 'printf "\nStopped.\n"; exit 143' TERM HUP
 
 # wait_child PID [SECONDS]: its exit status; 124 when it had to be stopped because the time was over.
 wait_child() {
@@ -81,7 +81,8 @@ show_progress() {
     local pid=$1 log=$2 title=$3 progress
     [ -t 1 ] || return 0
     while kill -0 "$pid" 2>/dev/null; do
-        progress=$(tail -c 400 "$log" 2>/dev/null | grep -aoE '\[[0-9]+/[0-9]+\]|[0-9]+/[0-9]+ Test' | tail -n 1)
+        progress=$(tail -c 400 "$log" 2>/dev/null |
+            grep -aoE '\[[0-9]+/[0-9]+\]|[0-9]+/[0-9]+ Test' | tail -n 1) || true
         printf '\r%-36s %-16s' "$title" "${progress% Test}"
         sleep 0.3
     done
