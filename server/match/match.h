@@ -1,7 +1,8 @@
-// Match: the authoritative game of one arena. Owns the physics world, AI balls, attribution, lives and
-// the phases of the campaign; knows no socket, no byte and no clock. A tick is one call.
+// Match: the authoritative game of one arena. Owns the physics world, AI balls, attribution, lives
+// and the phases of the campaign; knows no socket, no byte and no clock. A tick is one call.
 //
-// Given the same levels, seed and calls in the same ticks, a match gives the same bits. Not thread-safe.
+// Given the same levels, seed and calls in the same ticks, a match gives the same bits. Not
+// thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 
 #include "common/game/input.h"
 #include "common/game/level.h"
+#include "common/game/rules.h"
 #include "common/physics/world.h"
 #include "common/replication/messages.h"
 #include "common/replication/snapshot.h"
@@ -38,7 +40,8 @@ struct ScoreLine {
     PlayerId player = 0;
     std::string name;
     int knock_offs = 0, assists = 0, falls = 0;
-    std::int64_t coins_earned = 0;
+    std::int64_t coins_earned = 0;   // awarded and picked up
+    std::int64_t coins_dropped = 0;  // by falling
 };
 
 struct MatchTotals {
@@ -46,6 +49,18 @@ struct MatchTotals {
     std::uint64_t overruns = 0;       // ticks whose event budget ran out (world.h)
     std::uint64_t ai_knock_offs = 0;  // AI balls that fell
     int levels_cleared = 0, levels_lost = 0;
+    // Limits that were reached.
+    std::uint64_t spawns_delayed = 0;    // ticks in which a ball found no free spot and had to wait
+    std::uint64_t hits_left_out = 0;     // of snapshots (hit_log.h)
+    std::uint64_t reports_left_out = 0;  // collisions too soon after a stronger one to be reported
+    std::uint64_t contacts_forgotten = 0;  // early, by attribution (attribution.h)
+    std::uint64_t drops_refused = 0;  // coins that stayed in a purse because the field was full
+};
+
+// What a tick has to say to the log of the server.
+struct TickFacts {
+    bool overrun = false;         // the world's event budget ran out ...
+    double unspent_time_s = 0.0;  // ... and this much of the tick was not simulated
 };
 
 class Match {
@@ -55,7 +70,9 @@ class Match {
     ~Match();
 
     bool has_room() const;
-    // The player's record must be loaded in the ledger. Empty when the arena is full.
+    // The player's record must be loaded in the ledger, and stay so until `leave`. Empty when the
+    // arena is full. A ball is placed at once when the level is on, else at the start of the next
+    // one.
     std::optional<PlayerId> join(const PlayerKey& key, const std::string& name);
     void leave(PlayerId player);
     std::size_t player_count() const;
@@ -63,13 +80,14 @@ class Match {
     // The command acts from the next tick on, until another one comes.
     void set_input(PlayerId player, const game::InputCommand& input);
     void set_ready(PlayerId player);
-    void chat(PlayerId player, const std::string& text);
+    void chat(PlayerId player, const std::string& text);  // cut to kMaxChatBytes
     // Whether the shop is open to this player now.
     bool shop_is_open() const;
     // The ledger's tiers of this player have changed: the ball takes them on now.
     void upgrades_changed(PlayerId player);
 
-    void tick();
+    // One sixtieth of a second; nothing happens while nobody is here.
+    TickFacts tick();
 
     replication::Snapshot snapshot() const;  // hits: all since the last call of `clear_hits`
     void clear_hits();

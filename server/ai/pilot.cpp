@@ -1,0 +1,107 @@
+#include "server/ai/pilot.h"
+
+#include <numbers>
+
+#include "common/game/rules.h"
+#include "server/ai/steering.h"
+
+namespace fts::server::ai {
+namespace {
+
+using physics::Vec2d;
+
+// Sine and cosine by their series: within 1e-6 up to the largest aim error, and the same bits
+// everywhere.
+Vec2d rotated(const Vec2d& v, double angle_rad) {
+    const double x2 = angle_rad * angle_rad;
+    const double sine =
+        angle_rad * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0))));
+    const double cosine =
+        1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0)));
+    return {v.x() * cosine - v.y() * sine, v.x() * sine + v.y() * cosine};
+}
+
+// Mean 0, variance 1, within [-3.5, 3.5]: the sum of a few dice is nearly a bell.
+double nearly_normal(Random& random) {
+    constexpr int kDice = 4;
+    double sum = 0.0;
+    for (int i = 0; i < kDice; ++i) sum += random.between(-0.5, 0.5);
+    constexpr double kPerDeviation = std::numbers::sqrt3;
+    return sum * kPerDeviation;
+}
+
+}  // namespace
+
+Intent decide(game::Behaviour behaviour, const Situation& situation) {
+    switch (behaviour) {
+        case game::Behaviour::kChaser:
+            return chase(situation);
+        case game::Behaviour::kEdgeGuard:
+            return guard_edge(situation);
+        case game::Behaviour::kInterceptor:
+            return intercept(situation);
+        case game::Behaviour::kHerd:
+            return run_with_herd(situation);
+        case game::Behaviour::kCoward:
+            return flee(situation);
+        case game::Behaviour::kBruiser:
+            return charge(situation);
+    }
+    return {};
+}
+
+Pilot::Pilot(game::Behaviour behaviour, game::Difficulty difficulty, std::uint64_t seed)
+    : behaviour_(behaviour), skill_(skill_of(difficulty)), random_(seed) {
+    // Spreads the decisions of a level's balls over its ticks.
+    const int period = ticks_of_ms(skill_.decides_every_ms);
+    ticks_to_decision_ = static_cast<int>(random_.below(static_cast<std::uint64_t>(period)));
+}
+
+game::InputCommand Pilot::command(std::uint16_t ball, const game::BallStats& stats,
+                                  const physics::Platform& platform, const Memory& memory) {
+    if (ticks_to_decision_ > 0) {
+        --ticks_to_decision_;
+        return held_;
+    }
+    ticks_to_decision_ = ticks_of_ms(skill_.decides_every_ms) - 1;
+    if (const Frame* seen = memory.as_of(ticks_of_ms(skill_.reaction_ms)))
+        held_ = decide_now(ball, stats, platform, *seen);
+    return held_;
+}
+
+game::InputCommand Pilot::decide_now(std::uint16_t ball, const game::BallStats& stats,
+                                     const physics::Platform& platform, const Frame& seen) {
+    Situation situation{.platform = &platform,
+                        .stats = stats,
+                        .own = {},
+                        .others = {},
+                        .look_ahead_s = skill_.look_ahead_s};
+    bool found = false;
+    for (SeenBall other : seen) {
+        if (other.id == ball) {
+            // One knows one's own speed, and allows for being late.
+            other.position_m += other.velocity_mps * (skill_.reaction_ms / 1000.0);
+            situation.own = other;
+            found = true;
+        } else {
+            other.position_m += other.velocity_mps * skill_.look_ahead_s;
+            situation.others.push_back(other);
+        }
+    }
+    if (!found) return {};
+
+    Intent intent = decide(behaviour_, situation);
+    intent.thrust = with_aim_noise(intent.thrust);
+    intent = kept_on_platform(situation, intent, skill_.decides_every_ms / 1000.0);
+    game::InputCommand command = game::command_toward(intent.thrust);
+    command.brake = intent.brake;
+    command.dash = intent.dash;
+    return command;
+}
+
+Vec2d Pilot::with_aim_noise(const Vec2d& direction) {
+    constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+    return rotated(direction, nearly_normal(random_) * skill_.aim_noise_deg * kRadiansPerDegree);
+}
+
+}  // namespace fts::server::ai

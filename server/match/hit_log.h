@@ -1,0 +1,28 @@
+// The collisions since the last snapshot that are worth a spark. Bounded: when there are more than
+// kMaxHits, the strongest stay and the rest are counted.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/replication/snapshot.h"
+
+namespace fts::server {
+
+class HitLog {
+  public:
+    static constexpr std::size_t kMaxHits = 64;
+
+    // A pair that collides twice in one tick is one hit, its stronger one.
+    void add(const replication::HitState& hit);
+    // Sorted by (tick, a, b).
+    std::vector<replication::HitState> sorted() const;
+    void clear() { hits_.clear(); }
+    std::uint64_t left_out() const { return left_out_; }
+
+  private:
+    std::vector<replication::HitState> hits_;
+    std::uint64_t left_out_ = 0;
+};
+
+}  // namespace fts::server

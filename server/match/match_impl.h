@@ -1,0 +1,153 @@
+// The inside of a match, shared by match*.cpp only.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/game/movement.h"
+#include "common/game/rules.h"
+#include "server/ai/perception.h"
+#include "server/ai/pilot.h"
+#include "server/match/attribution.h"
+#include "server/match/hit_log.h"
+#include "server/match/id_pool.h"
+#include "server/match/match.h"
+#include "server/match/random.h"
+
+namespace fts::server {
+
+using replication::Tick;
+using World = physics::World<double>;
+
+constexpr Tick ticks_of(double duration_s) {
+    return static_cast<Tick>(duration_s * game::kTickRateHz + 0.5);
+}
+
+inline constexpr std::size_t kMaxFieldCoins = 256;
+inline constexpr std::uint8_t kPaletteColours = 8;
+inline constexpr Tick kIdRestTicks = ticks_of(10.0);
+// A player is told of at most 10 hits a second: the strongest of each interval.
+inline constexpr Tick kReportIntervalTicks = game::kTickRateHz / 10;
+inline constexpr Tick kRosterIntervalTicks = game::kTickRateHz / 5;
+
+struct Match::Impl {
+    struct Ball {
+        physics::BodyId body;
+        PlayerId player = 0;  // 0: an AI ball
+        game::BallStats stats;
+        game::InputCommand input;
+        game::DashState dash;
+        bool dashed = false;  // since the last snapshot
+        game::Behaviour behaviour = game::Behaviour::kChaser;
+        std::optional<ai::Pilot> pilot;  // of an AI ball
+    };
+    struct Player {
+        PlayerKey key{};
+        std::string name;
+        game::InputCommand input;
+        int lives = 0;
+        bool ready = false;
+        std::uint16_t ball = 0;  // 0: not on the platform
+        Tick spawn_tick = 0;     // not before this tick, without a ball and with lives left
+        int coins_this_level = 0;
+        std::optional<replication::Wallet> told_wallet;
+        std::optional<replication::CollisionReport> strongest_hit;
+        Tick next_report_tick = 0;
+    };
+    struct Coin {
+        physics::Vec2d position_m;
+        int value_coins = 1;
+    };
+    // An AI ball of the level that has not found its place yet.
+    struct Waiting {
+        std::size_t group = 0;
+        std::uint64_t seed = 0;
+    };
+
+    Impl(const MatchConfig& match_config, Ledger& match_ledger);
+
+    const game::Level& level() const { return config.levels[level_index]; }
+    Actor actor_of(std::uint16_t ball) const;
+    ScoreLine& score(PlayerId id) { return scores.at(id); }
+    void earn(PlayerId id, int earned);
+
+    // match_phases.cpp
+    void begin_level();
+    void begin_phase(game::Phase next, double duration_s);
+    void end_level(replication::LevelOutcome outcome);
+    void begin_next_level();
+    void pause();
+    bool everybody_is_ready() const;
+
+    // match_placing.cpp
+    void spawn_due();
+    bool spawn_ai(const Waiting& waiting);
+    bool spawn_player(PlayerId id, Player& player);
+    std::optional<std::uint16_t> place_ball(Ball ball);
+    void remove_ball(std::uint16_t id);
+    bool put_coin(const physics::Vec2d& position_m);
+    void drop_coins(PlayerId id, const physics::Vec2d& fallen_at_m);
+    void clear_field();
+
+    // match_play.cpp: the stages of a tick of play
+    TickFacts play_tick();
+    void think();
+    void apply_controls();
+    TickFacts step_world();
+    void record_contacts();
+    void settle_falls();
+    void settle_fall(std::uint16_t ball_id, const physics::Vec2d& fallen_at_m,
+                     const std::vector<Attribution::Share>& shares);
+    void collect_coins();
+    void judge_level();
+    void remember();
+
+    // match_messages.cpp
+    void tell(PlayerId player, replication::ServerMessage message);
+    void tell_all(replication::ServerMessage message);
+    void send_due();
+    void report_hit(std::uint16_t own, std::uint16_t other, const physics::Contact<double>& contact,
+                    bool own_is_a);
+    replication::LevelStarted level_started() const;
+    replication::Roster roster() const;
+    replication::Wallet wallet_of(const Player& player) const;
+
+    MatchConfig config;
+    Ledger& ledger;
+    Random random;
+    IdPool ball_ids{kIdRestTicks};
+    IdPool coin_ids{kIdRestTicks};
+
+    Tick now = 0;
+    game::Phase phase = game::Phase::kWaiting;
+    Tick phase_end = 0;
+    std::size_t level_index = 0;
+    bool cleared = false;  // the level whose shop is open
+
+    std::optional<World> world;  // of the present level; empty while the arena is paused
+    std::map<std::uint16_t, Ball> balls;
+    std::vector<std::uint16_t> ball_of_slot;  // by BodyId::index, of the latest body there
+    std::vector<Waiting> waiting_ai;
+    std::map<std::uint16_t, Coin> coins;
+    Attribution attribution;
+    ai::Memory memory;
+    HitLog hits;
+
+    PlayerId last_player = 0;
+    std::map<PlayerId, Player> players;
+    std::map<PlayerKey, int> lives_of_leavers;  // in this level: coming back does not renew them
+    std::map<PlayerId, ScoreLine> scores;
+
+    replication::Roster told_roster;
+    Tick next_roster_tick = 0;
+    std::vector<Outgoing> outgoing;
+
+    MatchTotals totals;
+    physics::CollisionAudit audit_before;  // of the worlds of past levels
+    physics::CollisionAudit audit;
+};
+
+}  // namespace fts::server

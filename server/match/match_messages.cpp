@@ -1,0 +1,179 @@
+// What a match says: messages, the briefing and the snapshot.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "server/match/match_impl.h"
+
+namespace fts::server {
+namespace {
+
+using replication::quantise;
+
+bool same(const replication::PlayerInfo& a, const replication::PlayerInfo& b) {
+    return a.player_id == b.player_id && a.name == b.name && a.colour == b.colour &&
+           a.knock_offs == b.knock_offs && a.assists == b.assists && a.falls == b.falls &&
+           a.lives == b.lives && a.coins == b.coins && a.ready == b.ready;
+}
+
+bool same(const replication::Wallet& a, const replication::Wallet& b) {
+    return a.coins == b.coins && a.tiers == b.tiers;
+}
+
+int shown(std::int64_t coins) {
+    return static_cast<int>(std::min<std::int64_t>(coins, std::numeric_limits<int>::max()));
+}
+
+template <typename Unsigned>
+Unsigned steps(double value, double step) {
+    constexpr double kMost = static_cast<double>(std::numeric_limits<Unsigned>::max());
+    return static_cast<Unsigned>(std::clamp(std::round(value / step), 0.0, kMost));
+}
+
+}  // namespace
+
+void Match::Impl::tell(PlayerId player, replication::ServerMessage message) {
+    outgoing.push_back({player, std::move(message)});
+}
+
+void Match::Impl::tell_all(replication::ServerMessage message) {
+    outgoing.push_back({std::nullopt, std::move(message)});
+}
+
+void Match::Impl::send_due() {
+    for (auto& [id, player] : players) {
+        const replication::Wallet wallet = wallet_of(player);
+        if (!player.told_wallet || !same(*player.told_wallet, wallet)) {
+            player.told_wallet = wallet;
+            tell(id, wallet);
+        }
+        if (player.strongest_hit && now >= player.next_report_tick) {
+            tell(id, *player.strongest_hit);
+            player.strongest_hit.reset();
+            player.next_report_tick = now + kReportIntervalTicks;
+        }
+    }
+    if (now < next_roster_tick) return;
+    replication::Roster present = roster();
+    const auto& told = told_roster.players;
+    const bool unchanged =
+        std::equal(present.players.begin(), present.players.end(), told.begin(), told.end(),
+                   [](const auto& a, const auto& b) { return same(a, b); });
+    if (unchanged) return;
+    told_roster = present;
+    next_roster_tick = now + kRosterIntervalTicks;
+    tell_all(std::move(present));
+}
+
+void Match::Impl::report_hit(std::uint16_t own, std::uint16_t other,
+                             const physics::Contact<double>& contact, bool own_is_a) {
+    const PlayerId id = balls.at(own).player;
+    if (id == 0) return;
+    Player& player = players.at(id);
+    if (player.strongest_hit) {
+        ++totals.reports_left_out;
+        if (player.strongest_hit->impulse_ns >= contact.impulse_ns) return;
+    }
+    replication::CollisionReport::Side a{.ball = own_is_a ? own : other,
+                                         .player_id = 0,
+                                         .mass_kg = contact.mass_a_kg,
+                                         .radius_m = 0.0,
+                                         .position_m = contact.position_a_m,
+                                         .velocity_before_mps = contact.velocity_a_before_mps,
+                                         .velocity_after_mps = contact.velocity_a_after_mps};
+    replication::CollisionReport::Side b{.ball = own_is_a ? other : own,
+                                         .player_id = 0,
+                                         .mass_kg = contact.mass_b_kg,
+                                         .radius_m = 0.0,
+                                         .position_m = contact.position_b_m,
+                                         .velocity_before_mps = contact.velocity_b_before_mps,
+                                         .velocity_after_mps = contact.velocity_b_after_mps};
+    for (auto* side : {&a, &b}) {
+        side->player_id = balls.at(side->ball).player;
+        side->radius_m = balls.at(side->ball).stats.radius_m;
+    }
+    player.strongest_hit = {.tick = now,
+                            .time_in_tick_s = contact.time_s,
+                            .own = own_is_a ? a : b,
+                            .other = own_is_a ? b : a,
+                            .normal = own_is_a ? contact.normal : -contact.normal,
+                            .impulse_ns = contact.impulse_ns};
+}
+
+replication::LevelStarted Match::Impl::level_started() const {
+    int ai_balls = 0;
+    for (const game::AiGroup& group : level().ai) ai_balls += group.count;
+    return {.number = level().number,
+            .level_count = static_cast<int>(config.levels.size()),
+            .name = level().name,
+            .hint = level().hint,
+            .platform = level().platform,
+            .ai_balls = ai_balls};
+}
+
+replication::Roster Match::Impl::roster() const {
+    replication::Roster result;
+    for (const auto& [id, player] : players) {
+        const ScoreLine& line = scores.at(id);
+        result.players.push_back({.player_id = id,
+                                  .name = player.name,
+                                  .colour = static_cast<std::uint8_t>((id - 1) % kPaletteColours),
+                                  .knock_offs = line.knock_offs,
+                                  .assists = line.assists,
+                                  .falls = line.falls,
+                                  .lives = player.lives,
+                                  .coins = shown(ledger.coins(player.key)),
+                                  .ready = player.ready});
+    }
+    return result;
+}
+
+replication::Wallet Match::Impl::wallet_of(const Player& player) const {
+    return {shown(ledger.coins(player.key)), ledger.tiers(player.key)};
+}
+
+std::vector<replication::ServerMessage> Match::briefing(PlayerId id) const {
+    const auto found = impl_->players.find(id);
+    if (found == impl_->players.end()) return {};
+    return {impl_->level_started(), impl_->roster(), impl_->wallet_of(found->second)};
+}
+
+replication::Snapshot Match::snapshot() const {
+    const Impl& match = *impl_;
+    replication::Snapshot result;
+    result.tick = match.now;
+    result.arena = static_cast<std::uint8_t>(match.config.arena);
+    result.phase = match.phase;
+    result.level = static_cast<std::uint16_t>(match.level().number);
+    result.phase_end_tick = match.phase_end;
+    const bool moving = match.phase == game::Phase::kPlaying;
+    for (const auto& [id, ball] : match.balls) {
+        const auto body = match.world->body(ball.body);
+        const game::InputCommand input = moving ? ball.input : game::InputCommand{};
+        result.balls.push_back(
+            {.id = id,
+             .x = quantise(body.position_m.x(), replication::kPositionStepM),
+             .y = quantise(body.position_m.y(), replication::kPositionStepM),
+             .vx = quantise(body.velocity_mps.x(), replication::kVelocityStepMps),
+             .vy = quantise(body.velocity_mps.y(), replication::kVelocityStepMps),
+             .thrust_x = input.thrust_x,
+             .thrust_y = input.thrust_y,
+             .brake = input.brake,
+             .dashed = ball.dashed,
+             .radius = steps<std::uint16_t>(body.radius_m, replication::kRadiusStepM),
+             .mass = steps<std::uint32_t>(body.mass_kg, replication::kMassStepKg),
+             .kind = static_cast<std::uint8_t>(ball.player != 0 ? replication::BallKind::kPlayer
+                                                                : replication::BallKind::kAi),
+             .behaviour = static_cast<std::uint8_t>(ball.player != 0 ? game::Behaviour::kChaser
+                                                                     : ball.behaviour),
+             .player_id = ball.player});
+    }
+    for (const auto& [id, coin] : match.coins)
+        result.coins.push_back({id, quantise(coin.position_m.x(), replication::kPositionStepM),
+                                quantise(coin.position_m.y(), replication::kPositionStepM),
+                                static_cast<std::uint16_t>(coin.value_coins)});
+    result.hits = match.hits.sorted();
+    return result;
+}
+
+}  // namespace fts::server

@@ -1,0 +1,130 @@
+// Where balls and coins come from and go to.
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "server/match/match_impl.h"
+#include "server/match/spawn.h"
+
+namespace fts::server {
+
+using physics::Vec2d;
+
+Actor Match::Impl::actor_of(std::uint16_t ball) const {
+    const PlayerId player = balls.at(ball).player;
+    return player != 0 ? Actor{player, 0} : Actor{0, ball};
+}
+
+void Match::Impl::earn(PlayerId id, int earned) {
+    score(id).coins_earned += earned;
+    players.at(id).coins_this_level += earned;
+}
+
+void Match::Impl::spawn_due() {
+    if (phase != game::Phase::kCountdown && phase != game::Phase::kPlaying) return;
+    bool delayed = false;
+    std::erase_if(waiting_ai, [&](const Waiting& waiting) {
+        const bool placed = spawn_ai(waiting);
+        delayed |= !placed;
+        return placed;
+    });
+    for (auto& [id, player] : players) {
+        if (player.ball != 0 || player.lives == 0 || now < player.spawn_tick) continue;
+        delayed |= !spawn_player(id, player);
+    }
+    if (delayed) ++totals.spawns_delayed;
+}
+
+bool Match::Impl::spawn_ai(const Waiting& waiting) {
+    const game::AiGroup& group = level().ai[waiting.group];
+    Ball ball;
+    ball.stats = game::stats_for({});
+    ball.stats.radius_m = group.radius_m;
+    ball.stats.mass_kg = group.mass_kg;
+    ball.stats.thrust_n = group.thrust_n;
+    ball.stats.top_speed_mps = group.top_speed_mps;
+    ball.behaviour = group.behaviour;
+    ball.pilot.emplace(group.behaviour, group.difficulty, waiting.seed);
+    return place_ball(std::move(ball)).has_value();
+}
+
+bool Match::Impl::spawn_player(PlayerId id, Player& player) {
+    Ball ball;
+    ball.player = id;
+    ball.stats = game::stats_for(ledger.tiers(player.key));
+    const auto placed = place_ball(std::move(ball));
+    if (!placed) return false;
+    player.ball = *placed;
+    attribution.respawned({id, 0});
+    return true;
+}
+
+std::optional<std::uint16_t> Match::Impl::place_ball(Ball ball) {
+    const auto clearance_m = [this](const Vec2d& point) {
+        double nearest_m = std::numeric_limits<double>::infinity();
+        for (const auto& [id, other] : balls) {
+            const auto body = world->body(other.body);
+            nearest_m = std::min(nearest_m, (body.position_m - point).norm() - body.radius_m);
+        }
+        return nearest_m;
+    };
+    const auto spot = find_spawn(level().platform, ball.stats.radius_m, clearance_m, random);
+    if (!spot) return std::nullopt;
+    const auto id = ball_ids.take(now);
+    if (!id) return std::nullopt;
+    const auto body = world->add({.position_m = *spot,
+                                  .velocity_mps = Vec2d::Zero(),
+                                  .radius_m = ball.stats.radius_m,
+                                  .mass_kg = ball.stats.mass_kg});
+    if (!body) {
+        ball_ids.give_back(*id, now);
+        return std::nullopt;
+    }
+    ball.body = *body;
+    if (ball_of_slot.size() <= body->index) ball_of_slot.resize(body->index + 1);
+    ball_of_slot[body->index] = *id;
+    balls.emplace(*id, std::move(ball));
+    return id;
+}
+
+void Match::Impl::remove_ball(std::uint16_t id) {
+    const auto found = balls.find(id);
+    assert(found != balls.end());
+    if (world->contains(found->second.body)) world->remove(found->second.body);
+    balls.erase(found);
+    ball_ids.give_back(id, now);
+}
+
+bool Match::Impl::put_coin(const Vec2d& position_m) {
+    if (coins.size() == kMaxFieldCoins) return false;
+    const auto id = coin_ids.take(now);
+    if (!id) return false;
+    coins.emplace(*id, Coin{position_m});
+    return true;
+}
+
+void Match::Impl::drop_coins(PlayerId id, const Vec2d& fallen_at_m) {
+    constexpr std::int64_t kDropDivisor = 10;
+    constexpr std::int64_t kMostDropped = 5;
+    constexpr double kDropSpreadM = 2.0;
+    constexpr double kDropMarginM = 0.5;
+    const PlayerKey& key = players.at(id).key;
+    const std::int64_t dropped = std::min(ledger.coins(key) / kDropDivisor, kMostDropped);
+    const Vec2d edge = physics::nearest_edge_point_m(level().platform, fallen_at_m);
+    for (std::int64_t i = 0; i < dropped; ++i) {
+        if (!put_coin(scatter_near(level().platform, edge, kDropSpreadM, kDropMarginM, random))) {
+            totals.drops_refused += static_cast<std::uint64_t>(dropped - i);
+            return;
+        }
+        ledger.drop(key, config.arena, 1);
+        ++score(id).coins_dropped;
+    }
+}
+
+void Match::Impl::clear_field() {
+    for (const auto& [id, coin] : coins) coin_ids.give_back(id, now);
+    coins.clear();
+    ledger.sweep_field(config.arena);
+}
+
+}  // namespace fts::server
