@@ -1,5 +1,5 @@
-// What client and server say to each other over the reliable ordered channel, as plain values, and the
-// two unreliable payloads. wire.h turns them into bytes and back; this file sees no Protobuf.
+// What client and server say to each other over the reliable ordered channel, as plain values, and
+// the two unreliable payloads. wire.h turns them into bytes and back; this file sees no Protobuf.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,17 @@
 
 namespace fts::replication {
 
-// ---- client to server, reliable --------------------------------------------------------------------
+// ---- client to server, reliable
+// --------------------------------------------------------------------
 
 struct JoinRequest {
-    std::string name;       // cut to kMaxNameBytes, control characters removed, by the server
-    int arena = -1;         // -1: wherever there is room
+    std::string name;  // cut to kMaxNameBytes, control characters removed, by the server
+    int arena = -1;    // -1: wherever there is room
 };
 struct BuyRequest {
     std::uint64_t request_id = 0;  // unique per player for ever; the same id is never charged twice
     game::Stat stat = game::Stat::kMass;
-    int tier = 0;                  // the tier the player has seen; a stale one is refused
+    int tier = 0;  // the tier the player has seen; a stale one is refused
 };
 struct ChatRequest {
     std::string text;
@@ -33,7 +34,8 @@ struct ChatRequest {
 struct ReadyRequest {};  // done shopping
 using ClientMessage = std::variant<JoinRequest, BuyRequest, ChatRequest, ReadyRequest>;
 
-// ---- server to client, reliable --------------------------------------------------------------------
+// ---- server to client, reliable
+// --------------------------------------------------------------------
 
 struct Welcome {
     std::uint16_t player_id = 0;  // > 0
@@ -79,9 +81,9 @@ enum class PurchaseOutcome : std::uint8_t {
     kAlreadyBought,  // this request id was settled before; nothing was charged again
     kTooExpensive,
     kLastTier,
-    kStalePrice,     // the tier is not the one the player has now
+    kStalePrice,  // the tier is not the one the player has now
     kShopClosed,
-    kStoreFailed,    // it could not be written down; nothing was charged
+    kStoreFailed,  // it could not be written down; nothing was charged
 };
 struct PurchaseResult {
     std::uint64_t request_id = 0;
@@ -93,13 +95,13 @@ struct ChatLine {
 };
 struct KnockOff {
     std::uint16_t victim_ball = 0;
-    std::uint16_t victim_player = 0;            // 0: an AI ball
+    std::uint16_t victim_player = 0;  // 0: an AI ball
     struct Share {
         std::uint16_t player_id = 0;
         int coins = 0;
         bool assist = false;
     };
-    std::vector<Share> shares;                  // empty: nobody's doing
+    std::vector<Share> shares;  // empty: nobody's doing
 };
 // One hit of the receiving player's own ball, in full doubles, so that a learner can check that
 // momentum and energy are conserved to the last bit.
@@ -110,26 +112,30 @@ struct CollisionReport {
         std::uint16_t ball = 0;
         std::uint16_t player_id = 0;
         double mass_kg = 0.0, radius_m = 0.0;
-        physics::Vec2d position_m, velocity_before_mps, velocity_after_mps;
+        physics::Vec2d position_m = physics::Vec2d::Zero();
+        physics::Vec2d velocity_before_mps = physics::Vec2d::Zero();
+        physics::Vec2d velocity_after_mps = physics::Vec2d::Zero();
     };
     Side own, other;
-    physics::Vec2d normal;  // unit, from other to own
+    physics::Vec2d normal = physics::Vec2d::UnitX();  // unit, from other to own
     double impulse_ns = 0.0;
 };
 using ServerMessage = std::variant<Welcome, JoinRefused, LevelStarted, LevelEnded, Roster, Wallet,
                                    PurchaseResult, ChatLine, KnockOff, CollisionReport>;
 
-// ---- client to server, unreliable -------------------------------------------------------------------
+// ---- client to server, unreliable
+// -------------------------------------------------------------------
 
 inline constexpr std::size_t kMaxInputsPerPacket = 32;
 
 struct InputPacket {
-    Tick acked_snapshot_tick = 0;       // the newest whole snapshot held; 0: none
-    std::uint32_t first_sequence = 0;   // of inputs[0]; consecutive
+    Tick acked_snapshot_tick = 0;            // the newest whole snapshot held; 0: none
+    std::uint32_t first_sequence = 0;        // of inputs[0]; consecutive
     std::vector<game::InputCommand> inputs;  // oldest first, at most kMaxInputsPerPacket
 };
 
-// ---- server to client, unreliable -------------------------------------------------------------------
+// ---- server to client, unreliable
+// -------------------------------------------------------------------
 
 struct SnapshotPacket {
     std::uint32_t acked_input_sequence = 0;  // newest input the server has applied; 0: none

@@ -1,9 +1,9 @@
-// A snapshot is an immutable value: what one arena looks like at one tick, quantised, every list sorted
-// by id without repeats. It is what travels; it is not the simulation, and holds no name or score (those
-// are messages, messages.h).
+// A snapshot is an immutable value: what one arena looks like at one tick, quantised, every list
+// sorted by id without repeats. It is what travels; it is not the simulation, and holds no name or
+// score (those are messages, messages.h).
 //
-// Position step kPositionStepM, velocity step kVelocityStepMps; `quantise` rounds to nearest and clamps
-// to the range, which `in_range` lets a caller check first.
+// Position step kPositionStepM, velocity step kVelocityStepMps; `quantise` rounds to nearest and
+// clamps to the range (+-2097 km, +-8388 km/s), which `in_range` lets a caller check first.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,21 @@ inline constexpr double kRadiusStepM = 1.0 / 256.0;
 inline constexpr double kMassStepKg = 1.0 / 256.0;
 
 struct BallState {
-    std::uint16_t id = 0;        // unique within the arena for the ball's life, not reused within 10 s
-    std::int32_t x = 0, y = 0;   // kPositionStepM
-    std::int32_t vx = 0, vy = 0; // kVelocityStepMps
+    std::uint16_t id = 0;  // unique within the arena for the ball's life, not reused within 10 s
+    std::int32_t x = 0, y = 0;               // kPositionStepM
+    std::int32_t vx = 0, vy = 0;             // kVelocityStepMps
     std::int8_t thrust_x = 0, thrust_y = 0;  // the control that acts on it (input.h)
     bool brake = false;
-    bool dashed = false;         // a dash fired since the last snapshot
-    std::uint16_t radius = 0;    // kRadiusStepM
-    std::uint32_t mass = 0;      // kMassStepKg
-    std::uint8_t kind = 0;       // BallKind
-    std::uint8_t behaviour = 0;  // game::Behaviour, for an AI ball
-    std::uint16_t player_id = 0; // 0 for an AI ball
+    bool dashed = false;          // a dash fired since the last snapshot
+    std::uint16_t radius = 0;     // kRadiusStepM
+    std::uint32_t mass = 0;       // kMassStepKg
+    std::uint8_t kind = 0;        // BallKind
+    std::uint8_t behaviour = 0;   // game::Behaviour, for an AI ball
+    std::uint16_t player_id = 0;  // 0 for an AI ball
     friend bool operator==(const BallState&, const BallState&) = default;
 };
 enum class BallKind : std::uint8_t { kAi = 0, kPlayer = 1 };
+inline constexpr game::Behaviour kLastBehaviour = game::Behaviour::kBruiser;
 
 struct CoinState {
     std::uint16_t id = 0;
@@ -50,8 +51,8 @@ struct CoinState {
 struct HitState {
     Tick tick = 0;
     std::uint16_t a = 0, b = 0;
-    std::int32_t x = 0, y = 0;      // contact point, kPositionStepM
-    std::uint32_t impulse = 0;      // kMassStepKg * m/s
+    std::int32_t x = 0, y = 0;  // contact point, kPositionStepM
+    std::uint32_t impulse = 0;  // kMassStepKg * m/s
     friend bool operator==(const HitState&, const HitState&) = default;
 };
 
@@ -67,10 +68,13 @@ struct Snapshot {
     friend bool operator==(const Snapshot&, const Snapshot&) = default;
 };
 
-// Lists sorted by id, without repeats; hits sorted by (tick, a, b).
+// Lists sorted by id, without repeats; hits sorted by (tick, a, b); every enum one of its values.
 bool is_canonical(const Snapshot& snapshot);
 
+// The nearest whole number of steps, halves away from zero, clamped to the 32-bit range; 0 for NaN.
+// Whatever `in_range` holds for is off by at most half a step, and nothing else is.
 std::int32_t quantise(double value, double step);
+bool in_range(double value, double step);
 double dequantise(std::int64_t steps, double step);
 
 }  // namespace fts::replication
