@@ -1,11 +1,12 @@
 // Sessions over datagrams: a stateless cookie, an encrypted handshake, then two ways to send bytes.
-// `Listener` is the accepting end of many sessions on one port, `Dialer` the calling end of one. Neither
-// owns a socket or reads a clock: datagrams and time are passed in, datagrams go out through a Transport.
+// `Listener` is the accepting end of many sessions on one port, `Dialer` the calling end of one.
+// Neither owns a socket or reads a clock: datagrams and time are passed in, datagrams go out
+// through a Transport.
 //
 // Handshake: Noise_XX_25519_ChaChaPoly_BLAKE2b (libsodium, in cipher.cpp only). The first packet is
-// padded to kMaxDatagramBytes and answered by a cookie that costs the server no memory; replies never
-// exceed what came in before the address is proven. After it every packet is sealed with a counter as
-// nonce; replays are dropped, and an address may change in mid-session.
+// padded to kMaxDatagramBytes and answered by a cookie that costs the server no memory; replies
+// never exceed what came in before the address is proven. After it every packet is sealed with a
+// counter as nonce; replays are dropped, and an address may change in mid-session.
 //
 // Nothing that arrives can crash, hang or grow it: each packet that is not understood is counted by
 // reason and dropped. Not thread-safe.
@@ -22,6 +23,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/net/identity.h"
 #include "common/net/transport.h"
 
 namespace fts::net {
@@ -35,29 +37,15 @@ inline constexpr std::size_t kMaxMessageBytes = 64 * 1024;
 
 inline constexpr double kDefaultTimeoutS = 5.0;
 
-using PublicKey = std::array<std::uint8_t, 32>;
-using SecretKey = std::array<std::uint8_t, 32>;
-struct KeyPair {
-    PublicKey public_key{};
-    SecretKey secret_key{};
-};
-KeyPair generate_key_pair();
-// Hex of the first 8 bytes, for logs and screens.
-std::string short_name(const PublicKey& key);
-
-// Reads the key pair kept at `path`, or makes one (file mode 0600). Empty with `error` set to a message
-// that names the path and a remedy.
-std::optional<KeyPair> load_or_create_key_pair(const std::string& path, std::string& error);
-
 enum class DisconnectReason : std::uint8_t {
-    kClosed,          // the other end said goodbye
-    kTimeout,         // nothing arrived for timeout_s
-    kUnreachable,     // the first packet was never answered
+    kClosed,       // the other end said goodbye
+    kTimeout,      // nothing arrived for timeout_s
+    kUnreachable,  // the first packet was never answered
     kServerFull,
-    kWrongVersion,    // the other end speaks another protocol version
-    kRefused,         // the other end refused, `detail` says why
-    kKeyChanged,      // the server's key is not the pinned one
-    kProtocolError,   // the peer broke the protocol after the handshake
+    kWrongVersion,   // the other end speaks another protocol version
+    kRefused,        // the other end refused, `detail` says why
+    kKeyChanged,     // the server's key is not the pinned one
+    kProtocolError,  // the peer broke the protocol after the handshake
     kKicked,
 };
 std::string_view name_of(DisconnectReason reason);
@@ -72,10 +60,10 @@ struct Connected {
 struct Disconnected {
     ConnectionId id = 0;
     DisconnectReason reason = DisconnectReason::kClosed;
-    std::string detail;                     // human-readable; what the other end wrote, if anything
-    std::uint16_t peer_version = 0;         // set with kWrongVersion
+    std::string detail;              // human-readable; what the other end wrote, if anything
+    std::uint16_t peer_version = 0;  // set with kWrongVersion
 };
-struct ReliableMessage {   // each exactly once, in the order sent
+struct ReliableMessage {  // each exactly once, in the order sent
     ConnectionId id = 0;
     std::vector<std::uint8_t> bytes;
 };
@@ -86,18 +74,19 @@ struct UnreliablePayload {  // at most once, any order
 using Event = std::variant<Connected, Disconnected, ReliableMessage, UnreliablePayload>;
 
 struct LinkStats {
-    double rtt_s = 0.0;          // smoothed; 0 until measured
-    double rtt_jitter_s = 0.0;   // smoothed mean deviation
-    double loss = 0.0;           // share of recent packets of ours that were never acknowledged, [0, 1]
+    double rtt_s = 0.0;         // smoothed; 0 until measured
+    double rtt_jitter_s = 0.0;  // smoothed mean deviation
+    double loss = 0.0;  // share of recent packets of ours that were never acknowledged, [0, 1]
     std::uint64_t packets_sent = 0, packets_received = 0;
     std::uint64_t bytes_sent = 0, bytes_received = 0;
 };
 
-// Why packets were dropped, by reason; a fixed set of names ("malformed", "bad_cookie", "replayed", ...).
+// Why packets were dropped, by reason; a fixed set of names ("malformed", "bad_cookie", "replayed",
+// ...).
 using DropCounters = std::map<std::string_view, std::uint64_t>;
 
 struct ListenerConfig {
-    KeyPair key;
+    KeyPair key{};
     std::uint16_t protocol_version = kProtocolVersion;
     std::size_t max_connections = 64;
     double timeout_s = kDefaultTimeoutS;
@@ -118,13 +107,16 @@ class Listener {
     // False when the session is gone, the payload too large or the reliable queue full.
     bool send_unreliable(ConnectionId id, std::span<const std::uint8_t> payload);
     bool send_reliable(ConnectionId id, std::span<const std::uint8_t> message);
+    // Says goodbye; the session is gone at once, and its Disconnected event follows here too.
     void disconnect(ConnectionId id, DisconnectReason reason, std::string_view detail);
-    // Says goodbye to everybody.
+    // The same to everybody, as kClosed.
     void close(std::string_view detail);
 
     std::size_t connection_count() const;
     std::optional<LinkStats> stats(ConnectionId id) const;
     const DropCounters& drops() const;
+    // The protocol version of the latest client that was refused for it ("wrong_version").
+    std::optional<std::uint16_t> last_foreign_version() const;
 
   private:
     struct Impl;
@@ -132,10 +124,11 @@ class Listener {
 };
 
 struct DialerConfig {
-    KeyPair key;
-    Address server;
+    KeyPair key{};
+    Address server{};
     std::uint16_t protocol_version = kProtocolVersion;
-    std::optional<PublicKey> pinned_server_key;  // refuse any other; absent: accept, the caller pins it
+    std::optional<PublicKey>
+        pinned_server_key{};  // refuse any other; absent: accept, the caller pins it
     double timeout_s = kDefaultTimeoutS;
 };
 
@@ -153,6 +146,7 @@ class Dialer {
 
     bool send_unreliable(std::span<const std::uint8_t> payload);
     bool send_reliable(std::span<const std::uint8_t> message);
+    // Says goodbye; a Disconnected event (kClosed) follows. Nothing when already disconnected.
     void close(std::string_view detail);
 
     State state() const;

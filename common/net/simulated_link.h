@@ -10,10 +10,10 @@
 namespace fts::net {
 
 struct LinkConditions {
-    double loss = 0.0;         // probability, each way, [0, 1]
-    double duplicate = 0.0;    // probability, each way, [0, 1]
-    double delay_s = 0.0;      // each way
-    double jitter_s = 0.0;     // uniform, +-, each way; makes datagrams overtake each other
+    double loss = 0.0;       // probability, each way, [0, 1]
+    double duplicate = 0.0;  // probability, each way, [0, 1]
+    double delay_s = 0.0;    // each way
+    double jitter_s = 0.0;   // uniform, +-, each way; makes datagrams overtake each other
     std::uint64_t seed = 1;
 };
 

@@ -13,7 +13,8 @@
 
 namespace fts::net {
 
-// The largest UDP payload that is sent: below the smallest path MTU met in practice (IPv6 1280 - 48).
+// The largest UDP payload that is sent: below the smallest path MTU met in practice (IPv6 1280 -
+// 48).
 inline constexpr std::size_t kMaxDatagramBytes = 1200;
 
 // An IPv4 address is held as its v4-mapped IPv6 form.
@@ -39,7 +40,8 @@ class Transport {
     // Queues or sends one datagram of at most kMaxDatagramBytes. False when it was dropped here.
     virtual bool send(const Address& to, std::span<const std::uint8_t> datagram) = 0;
 
-    using Receiver = std::function<void(const Address& from, std::span<const std::uint8_t> datagram)>;
+    using Receiver =
+        std::function<void(const Address& from, std::span<const std::uint8_t> datagram)>;
     // Hands over every datagram that has arrived by `now_s`; never blocks. Returns how many.
     virtual std::size_t poll(double now_s, const Receiver& receiver) = 0;
 };

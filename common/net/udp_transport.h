@@ -11,8 +11,8 @@ namespace fts::net {
 
 class UdpTransport final : public Transport {
   public:
-    // `bind_host` empty: every interface. Port 0: any free port. On failure returns nullptr and sets
-    // `error` to a message that names port and remedy ("UDP port 7777 is in use; ...").
+    // `bind_host` empty: every interface. Port 0: any free port. On failure returns nullptr and
+    // sets `error` to a message that names port and remedy ("UDP port 7777 is in use; ...").
     static std::unique_ptr<UdpTransport> open(const std::string& bind_host, std::uint16_t port,
                                               std::string& error);
     ~UdpTransport() override;

@@ -1,0 +1,33 @@
+// The reasons for which a packet is dropped. Every one is there from the start, at 0, so that what
+// reads the counters sees a fixed set.
+#pragma once
+
+#include <string_view>
+
+#include "common/net/connection.h"
+
+namespace fts::net::drop {
+
+inline constexpr std::string_view kMalformed = "malformed";    // not one of our packets
+inline constexpr std::string_view kUnexpected = "unexpected";  // ours, at the wrong time
+inline constexpr std::string_view kWrongVersion = "wrong_version";
+inline constexpr std::string_view kBadCookie = "bad_cookie";  // stale, or of another address
+inline constexpr std::string_view kBadHandshake =
+    "bad_handshake";  // a Noise message that is not valid
+inline constexpr std::string_view kServerFull = "server_full";
+inline constexpr std::string_view kHalfOpenLimit = "half_open_limit";
+inline constexpr std::string_view kUnknownSession = "unknown_session";
+inline constexpr std::string_view kReplayed = "replayed";
+inline constexpr std::string_view kBadSeal = "bad_seal";  // altered, or sealed by another key
+inline constexpr std::string_view kProtocolError = "protocol_error";
+inline constexpr std::string_view kEventsFull = "events_full";  // nobody drained the events
+inline constexpr std::string_view kUnprovenAddress = "unproven_address";  // ours, held back
+
+inline DropCounters make_counters() {
+    return {{kMalformed, 0},      {kUnexpected, 0}, {kWrongVersion, 0},  {kBadCookie, 0},
+            {kBadHandshake, 0},   {kServerFull, 0}, {kHalfOpenLimit, 0}, {kUnknownSession, 0},
+            {kReplayed, 0},       {kBadSeal, 0},    {kProtocolError, 0}, {kEventsFull, 0},
+            {kUnprovenAddress, 0}};
+}
+
+}  // namespace fts::net::drop
