@@ -19,6 +19,11 @@ template <typename Scalar>
 struct Control {
     Vec2<Scalar> acceleration_mps2 = Vec2<Scalar>::Zero();
     Scalar drag_per_s = Scalar(0);  // >= 0; terminal speed is |acceleration| / drag
+
+    bool acts() const {
+        return drag_per_s != Scalar(0) || acceleration_mps2.x() != Scalar(0) ||
+               acceleration_mps2.y() != Scalar(0);
+    }
 };
 
 template <typename Scalar>

@@ -107,22 +107,6 @@ Vec2d momentum_ns(const Bodies<Scalar>& bodies) {
 }
 
 template <typename Scalar>
-double deepest_penetration_m(const Bodies<Scalar>& bodies) {
-    double deepest = 0.0;
-    for (const BodyId a : bodies.ids) {
-        for (const BodyId b : bodies.ids) {
-            if (b.index >= a.index) break;
-            const Vec2d d =
-                (bodies.position_m[a.index] - bodies.position_m[b.index]).template cast<double>();
-            const double reach = static_cast<double>(bodies.radius_m[a.index]) +
-                                 static_cast<double>(bodies.radius_m[b.index]);
-            deepest = std::max(deepest, reach - d.norm());
-        }
-    }
-    return deepest;
-}
-
-template <typename Scalar>
 std::uint64_t state_hash(const Bodies<Scalar>& bodies) {
     Fnv1a hash;
     for (const BodyId id : bodies.ids) {
@@ -141,8 +125,6 @@ template double kinetic_energy_j(const Bodies<double>&);
 template double kinetic_energy_j(const Bodies<float>&);
 template Vec2d momentum_ns(const Bodies<double>&);
 template Vec2d momentum_ns(const Bodies<float>&);
-template double deepest_penetration_m(const Bodies<double>&);
-template double deepest_penetration_m(const Bodies<float>&);
 template std::uint64_t state_hash(const Bodies<double>&);
 template std::uint64_t state_hash(const Bodies<float>&);
 

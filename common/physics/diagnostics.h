@@ -18,10 +18,6 @@ double kinetic_energy_j(const Bodies<Scalar>& bodies);
 template <typename Scalar>
 Vec2d momentum_ns(const Bodies<Scalar>& bodies);
 
-// How deep the worst pair overlaps, metres; 0 when none does. Looks at all pairs.
-template <typename Scalar>
-double deepest_penetration_m(const Bodies<Scalar>& bodies);
-
 // FNV-1a over the bits of every living body's index, position, velocity, radius and mass.
 template <typename Scalar>
 std::uint64_t state_hash(const Bodies<Scalar>& bodies);

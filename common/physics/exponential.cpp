@@ -1,8 +1,9 @@
 #include "common/physics/exponential.h"
 
+#include <array>
 #include <bit>
 #include <cassert>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace fts::physics {
@@ -10,11 +11,24 @@ namespace {
 
 constexpr double kVanishes = 746.0;  // exp(-x) rounds to zero from here on
 
-// exp(r) - 1 for |r| <= ln(2)/2: r + r^2/2! + ... + r^15/15!, whose rest is below 1e-20.
+// 1/3!, 1/4!, ... 1/15!
+constexpr std::array<double, 13> kInverseFactorials = [] {
+    std::array<double, 13> table{};
+    double factorial = 2.0;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        factorial *= static_cast<double>(i + 3);
+        table[i] = 1.0 / factorial;
+    }
+    return table;
+}();
+
+// exp(r) - 1 for |r| <= ln(2)/2: its series up to r^15/15!, whose rest is below 1e-20.
 double exp_minus_one_near_zero(double r) {
-    double sum = 1.0;
-    for (int n = 15; n >= 3; --n) sum = 1.0 + sum * r / n;
-    return r + 0.5 * r * r * sum;
+    double tail = 0.0;
+    for (std::size_t i = kInverseFactorials.size(); i-- > 0;) {
+        tail = kInverseFactorials[i] + tail * r;
+    }
+    return r + r * r * (0.5 + r * tail);
 }
 
 // 2^exponent for normal results.

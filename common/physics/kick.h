@@ -7,10 +7,11 @@
 
 namespace fts::physics {
 
+// Returns whether any body has a control that acts; when not, nothing changed.
 template <typename Scalar>
-void kick(Bodies<Scalar>& bodies, Scalar span_s);
+bool kick(Bodies<Scalar>& bodies, Scalar span_s);
 
-extern template void kick<double>(Bodies<double>&, double);
-extern template void kick<float>(Bodies<float>&, float);
+extern template bool kick<double>(Bodies<double>&, double);
+extern template bool kick<float>(Bodies<float>&, float);
 
 }  // namespace fts::physics

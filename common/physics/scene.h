@@ -24,7 +24,8 @@ struct BodyDef {
     Vec2d position_m = Vec2d::Zero();
     Vec2d velocity_mps = Vec2d::Zero();
     double radius_m = 0.5;
-    double mass_kg = 1.0;  // (0, inf]; an infinite mass is never moved by a collision
+    // Up to infinity, which no collision moves; such a body passes through walls and its like.
+    double mass_kg = 1.0;
 };
 
 // Platforms: a body whose centre leaves one falls, at the exact time of the crossing, and is

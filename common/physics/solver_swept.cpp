@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 #include "common/physics/broadphase.h"
 #include "common/physics/diagnostics.h"
+#include "common/physics/event_queue.h"
 #include "common/physics/impact.h"
 #include "common/physics/time_of_impact.h"
 
@@ -18,24 +18,9 @@ namespace {
 constexpr double kClockSlack = 8.0;
 // By how many units of round-off a swept box is larger than what it must hold.
 constexpr double kBoxSlack = 8.0;
+// A part of the span: what was hit less long ago is hit elastically.
+constexpr double kElasticWithin = 1e-3;
 constexpr std::uint32_t kNobody = 0xffffffff;
-
-enum class Kind : std::uint8_t { kBall, kWall, kFall };
-enum Side : std::uint32_t { kMinX, kMaxX, kMinY, kMaxY };
-
-template <typename Scalar>
-struct Event {
-    Scalar time_s;
-    Kind kind;
-    std::uint32_t a;
-    std::uint32_t b;  // the other ball, or the Side of the wall
-    std::uint32_t count_a;
-    std::uint32_t count_b;
-
-    bool operator>(const Event& other) const {
-        return std::tie(time_s, kind, a, b) > std::tie(other.time_s, other.kind, other.a, other.b);
-    }
-};
 
 template <typename Scalar>
 class SweptSolver final : public Solver<Scalar> {
@@ -53,8 +38,7 @@ class SweptSolver final : public Solver<Scalar> {
     void predict_pair(std::uint32_t a, std::uint32_t b);
     void predict_walls(std::uint32_t body);
     void predict_fall(std::uint32_t body);
-    void push(const Event<Scalar>& event);
-    Event<Scalar> pop();
+    void expect(const Event<Scalar>& event);
     bool is_stale(const Event<Scalar>& event) const;
     bool process(const Event<Scalar>& event);
     bool collide_pair(std::uint32_t a, std::uint32_t b);
@@ -69,6 +53,8 @@ class SweptSolver final : public Solver<Scalar> {
     void move_to(std::uint32_t body, Scalar time_s);
     Box<Scalar> swept_box(std::uint32_t body) const;
     bool is_immovable(std::uint32_t body) const;
+    bool was_just_hit(std::uint32_t body) const;
+    Scalar restitution_of(bool just_hit) const;
 
     Bodies<Scalar>* bodies_ = nullptr;
     const Boundary<Scalar>* boundary_ = nullptr;
@@ -79,8 +65,9 @@ class SweptSolver final : public Solver<Scalar> {
     std::vector<Scalar> time_s_;          // by body: when its position holds
     std::vector<std::uint32_t> count_;    // by body: events so far
     std::vector<std::uint32_t> partner_;  // by body: whom it hit last, if nothing happened since
+    std::vector<Scalar> hit_s_;           // by body: the last collision
     std::vector<Box<Scalar>> boxes_;
-    std::vector<Event<Scalar>> queue_;  // min-heap
+    EventQueue<Scalar> queue_;
     Broadphase<Scalar> broadphase_;
 };
 
@@ -93,7 +80,7 @@ DriftReport<Scalar> SweptSolver<Scalar>::drift(Bodies<Scalar>& bodies,
     DriftReport<Scalar> report;
     const std::uint32_t budget = event_budget(bodies.ids.size());
     while (!queue_.empty()) {
-        const Event<Scalar> event = pop();
+        const Event<Scalar> event = queue_.pop();
         if (is_stale(event)) continue;
         if (report.events == budget) {
             report.overrun = true;
@@ -120,6 +107,7 @@ void SweptSolver<Scalar>::begin(Bodies<Scalar>& bodies, const Boundary<Scalar>& 
     time_s_.assign(bodies.slots(), Scalar(0));
     count_.assign(bodies.slots(), 0);
     partner_.assign(bodies.slots(), kNobody);
+    hit_s_.assign(bodies.slots(), -span_s);
     boxes_.clear();
     for (const BodyId id : bodies.ids) boxes_.push_back(swept_box(id.index));
     broadphase_.begin(boxes_, bodies.slots());
@@ -150,8 +138,8 @@ void SweptSolver<Scalar>::predict_pair(std::uint32_t a, std::uint32_t b) {
     const Vec separation = position_at(a, now_s_) - position_at(b, now_s_);
     const Vec velocity = bodies_->velocity_mps[a] - bodies_->velocity_mps[b];
     const Scalar reach = bodies_->radius_m[a] + bodies_->radius_m[b];
-    push({now_s_ + time_until_contact(separation, velocity, reach), Kind::kBall, a, b, count_[a],
-          count_[b]});
+    expect({now_s_ + time_until_contact(separation, velocity, reach), EventKind::kBall, a, b,
+            count_[a], count_[b]});
 }
 
 template <typename Scalar>
@@ -162,10 +150,10 @@ void SweptSolver<Scalar>::predict_walls(std::uint32_t body) {
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
         const Scalar below = position[axis] - (boundary_->walls->min_m[axis] + radius);
         const Scalar above = (boundary_->walls->max_m[axis] - radius) - position[axis];
-        push({now_s_ + time_until_wall(below, -velocity[axis]), Kind::kWall, body, 2 * axis,
-              count_[body], 0});
-        push({now_s_ + time_until_wall(above, velocity[axis]), Kind::kWall, body, 2 * axis + 1,
-              count_[body], 0});
+        expect({now_s_ + time_until_wall(below, -velocity[axis]), EventKind::kWall, body, 2 * axis,
+                count_[body], 0});
+        expect({now_s_ + time_until_wall(above, velocity[axis]), EventKind::kWall, body,
+                2 * axis + 1, count_[body], 0});
     }
 }
 
@@ -173,39 +161,29 @@ template <typename Scalar>
 void SweptSolver<Scalar>::predict_fall(std::uint32_t body) {
     const Scalar time = time_until_edge<Scalar>(*boundary_->platform, position_at(body, now_s_),
                                                 bodies_->velocity_mps[body]);
-    push({now_s_ + time, Kind::kFall, body, 0, count_[body], 0});
+    expect({now_s_ + time, EventKind::kFall, body, 0, count_[body], 0});
 }
 
 template <typename Scalar>
-void SweptSolver<Scalar>::push(const Event<Scalar>& event) {
-    if (!(event.time_s <= span_s_)) return;
-    queue_.push_back(event);
-    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-}
-
-template <typename Scalar>
-Event<Scalar> SweptSolver<Scalar>::pop() {
-    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-    const Event<Scalar> event = queue_.back();
-    queue_.pop_back();
-    return event;
+void SweptSolver<Scalar>::expect(const Event<Scalar>& event) {
+    if (event.time_s <= span_s_) queue_.push(event);
 }
 
 template <typename Scalar>
 bool SweptSolver<Scalar>::is_stale(const Event<Scalar>& event) const {
     return event.count_a != count_[event.a] ||
-           (event.kind == Kind::kBall && event.count_b != count_[event.b]);
+           (event.kind == EventKind::kBall && event.count_b != count_[event.b]);
 }
 
 template <typename Scalar>
 bool SweptSolver<Scalar>::process(const Event<Scalar>& event) {
     switch (event.kind) {
-        case Kind::kBall:
+        case EventKind::kBall:
             return collide_pair(event.a, event.b);
-        case Kind::kWall:
+        case EventKind::kWall:
             collide_wall(event.a, event.b);
             return true;
-        case Kind::kFall:
+        case EventKind::kFall:
             fall(event.a);
             return true;
     }
@@ -226,7 +204,8 @@ bool SweptSolver<Scalar>::collide_pair(std::uint32_t a, std::uint32_t b) {
     touch(a, b);
     const Mover<Scalar> first{all.position_m[a], all.velocity_mps[a], all.mass_kg[a]};
     const Mover<Scalar> second{all.position_m[b], all.velocity_mps[b], all.mass_kg[b]};
-    if (const auto hit = impact(first, second, boundary_->restitution)) {
+    const Scalar restitution = restitution_of(was_just_hit(a) || was_just_hit(b));
+    if (const auto hit = impact(first, second, restitution)) {
         all.velocity_mps[a] = hit->velocity_1_mps;
         all.velocity_mps[b] = hit->velocity_2_mps;
         record_->contacts.push_back({all.id_of(a), all.id_of(b), now_s_,
@@ -255,7 +234,7 @@ void SweptSolver<Scalar>::collide_wall(std::uint32_t body, std::uint32_t side) {
     const Vec before = velocity;
     position[axis] =
         at_max ? boundary_->walls->max_m[axis] - radius : boundary_->walls->min_m[axis] + radius;
-    velocity[axis] = -boundary_->restitution * velocity[axis];
+    velocity[axis] *= -restitution_of(was_just_hit(body));
     Vec normal = Vec::Zero();
     normal[axis] = at_max ? Scalar(-1) : Scalar(1);
     const Scalar impulse = all.mass_kg[body] * std::abs(velocity[axis] - before[axis]);
@@ -281,6 +260,7 @@ template <typename Scalar>
 void SweptSolver<Scalar>::after_event(std::uint32_t body, std::uint32_t partner) {
     ++count_[body];
     partner_[body] = partner;
+    hit_s_[body] = now_s_;
 }
 
 template <typename Scalar>
@@ -336,6 +316,16 @@ Box<Scalar> SweptSolver<Scalar>::swept_box(std::uint32_t body) const {
 template <typename Scalar>
 bool SweptSolver<Scalar>::is_immovable(std::uint32_t body) const {
     return std::isinf(bodies_->mass_kg[body]);
+}
+
+template <typename Scalar>
+bool SweptSolver<Scalar>::was_just_hit(std::uint32_t body) const {
+    return now_s_ - hit_s_[body] < static_cast<Scalar>(kElasticWithin) * span_s_;
+}
+
+template <typename Scalar>
+Scalar SweptSolver<Scalar>::restitution_of(bool just_hit) const {
+    return just_hit ? Scalar(1) : boundary_->restitution;
 }
 
 }  // namespace

@@ -11,8 +11,15 @@
 // clock, a pair is moved on along its own velocities by at most kClockSlack of round-off until it
 // just touches; no velocity changes, so that energy and momentum do not.
 //
+// With restitution below 1 balls could collide infinitely often in a finite time (inelastic
+// collapse). A body that was hit less than kElasticWithin of the span ago therefore loses nothing:
+// the TC model of Luding and McNamara, "How to handle the inelastic collapse of a dissipative
+// hard-sphere gas" (1998).
+//
 // The number of events of one drift is bounded by event_budget(). When more are due the drift stops
-// at the time of the last one processed, at which nothing overlaps, and says so.
+// at the time of the last one processed, at which nothing overlaps, and says so. Only what truly
+// never ends does that: a ball that exactly fills the room between two infinite masses, or is
+// squeezed by them.
 #pragma once
 
 #include <cstddef>

@@ -24,11 +24,6 @@ Boundary<Scalar> boundary_of(const Scene& scene) {
     return boundary;
 }
 
-template <typename Scalar>
-bool acts(const Control<Scalar>& control) {
-    return !control.acceleration_mps2.isZero(Scalar(0)) || control.drag_per_s != Scalar(0);
-}
-
 }  // namespace
 
 template <typename Scalar>
@@ -46,7 +41,7 @@ struct World<Scalar>::Impl {
     }
 
     void kick_if_anything_accelerates(Scalar span_s) {
-        if (anything_accelerates) kick(bodies, span_s);
+        if (anything_accelerates) anything_accelerates = kick(bodies, span_s);
     }
 };
 
@@ -114,7 +109,7 @@ void World<Scalar>::set_control(BodyId id, const Control<Scalar>& control) {
     assert(control.acceleration_mps2.allFinite());
     assert(std::isfinite(control.drag_per_s) && control.drag_per_s >= Scalar(0));
     impl_->bodies.control[id.index] = control;
-    impl_->anything_accelerates = impl_->anything_accelerates || acts(control);
+    impl_->anything_accelerates = impl_->anything_accelerates || control.acts();
 }
 
 template <typename Scalar>
