@@ -1,0 +1,244 @@
+#include "server/server.h"
+
+#include <cassert>
+#include <utility>
+#include <variant>
+
+#include "common/replication/wire.h"
+#include "server/limits.h"
+
+namespace fts::server {
+
+namespace {
+
+net::ListenerConfig listener_config(const ServerConfig& config) {
+    net::ListenerConfig listener;
+    listener.key = config.key;
+    listener.max_connections =
+        static_cast<std::size_t>(config.arenas * config.players_per_arena) + kSpareConnections;
+    return listener;
+}
+
+}  // namespace
+
+Server::Server(const ServerConfig& config, net::Transport& transport, std::unique_ptr<Store> store,
+               Log log)
+    : config_(config),
+      log_(std::move(log)),
+      ledger_(),
+      journal_((ledger_.open(store->totals_at_open()), std::move(store)), config.journal),
+      listener_(listener_config(config), transport),
+      transport_(transport) {
+    assert(!config.levels.empty());
+    assert(config.arenas >= 1 && config.arenas <= kMaxArenas);
+    assert(config.players_per_arena >= 1 && config.players_per_arena <= game::kMaxPlayersPerArena);
+    for (int i = 0; i < config.arenas; ++i) {
+        MatchConfig match;
+        match.arena = i;
+        match.seed = config.seed + static_cast<std::uint64_t>(i);
+        match.levels = config.levels;
+        match.max_players = config.players_per_arena;
+        arenas_.push_back(std::make_unique<Arena>(match, ledger_));
+    }
+}
+
+Server::~Server() = default;
+
+int Server::tick(double now_s) {
+    receive(now_s);
+    const int due = clock_.due(now_s);
+    if (due == 0) return 0;
+
+    for (int i = 0; i < due && !paused_; ++i) play_one_tick();
+    settle_ledger(now_s);
+    end_overdue_sessions(now_s);
+    listener_.update(now_s);
+    say_what_is_wrong(now_s);
+    return due;
+}
+
+void Server::receive(double now_s) {
+    transport_.poll(now_s, [&](const net::Address& from, std::span<const std::uint8_t> datagram) {
+        listener_.receive(from, datagram, now_s);
+    });
+    for (const net::Event& event : listener_.drain_events()) {
+        std::visit([&](const auto& happened) { on(happened, now_s); }, event);
+    }
+}
+
+void Server::play_one_tick() {
+    ++ticks_;
+    for (const auto& arena : arenas_) {
+        apply_inputs(*arena);
+        if (arena->match.tick().overrun) ++world_overruns_;
+        deliver(*arena);
+    }
+    // Arenas take turns, so that the work of encoding spreads over the ticks.
+    for (std::size_t i = 0; i < arenas_.size(); ++i) {
+        if ((ticks_ + i) % kTicksPerSnapshot == 0) publish_snapshot(*arenas_[i]);
+    }
+}
+
+void Server::apply_inputs(Arena& arena) {
+    for (const auto& [player, connection] : arena.players) {
+        arena.match.set_input(player, sessions_.at(connection).inputs.next());
+    }
+}
+
+void Server::deliver(Arena& arena) {
+    std::vector<std::pair<net::ConnectionId, std::string>> broken;
+    const auto pass_on = [&](net::ConnectionId id, std::span<const std::uint8_t> bytes) {
+        if (!send_encoded(id, bytes)) broken.emplace_back(id, "cannot keep up with the game");
+    };
+    for (const Outgoing& outgoing : arena.match.drain_outgoing()) {
+        const std::vector<std::uint8_t> bytes = replication::encode(outgoing.message);
+        if (!outgoing.to) {
+            for (const auto& [player, connection] : arena.players) pass_on(connection, bytes);
+        } else if (const auto found = arena.players.find(*outgoing.to);
+                   found != arena.players.end()) {
+            pass_on(found->second, bytes);
+        }
+    }
+    // What is reliable must not have gaps: who cannot take a message is told to come again.
+    for (const auto& [id, detail] : broken) kick(id, net::DisconnectReason::kKicked, detail);
+}
+
+void Server::publish_snapshot(Arena& arena) {
+    replication::Snapshot snapshot = arena.match.snapshot();
+    arena.match.clear_hits();
+    if (arena.players.empty() || snapshot.tick <= arena.feed.newest_tick()) return;
+    arena.feed.publish(std::move(snapshot));
+    for (const auto& [player, connection] : arena.players) {
+        send_snapshot(arena, sessions_.at(connection));
+    }
+}
+
+void Server::send_snapshot(Arena& arena, const Session& session) {
+    const SnapshotFeed::Parts& parts = arena.feed.parts_for(session.held_tick);
+    if (parts.empty()) count("snapshot_too_large");
+    for (const std::vector<std::uint8_t>& part : parts) {
+        const auto bytes = replication::encode(
+            replication::SnapshotPacket{session.inputs.applied_sequence(), part});
+        if (!listener_.send_unreliable(session.id, bytes)) count("snapshot_not_sent");
+    }
+}
+
+void Server::settle_ledger(double now_s) {
+    hand_over_transactions();
+    const Journal::State state = journal_.drain();
+    committed_up_to_ = state.committed_up_to;
+    store_failures_ = state.failures;
+    note_journal_health(state);
+    admit_loaded(state.loaded, now_s);
+    answer_purchases();
+}
+
+void Server::end_overdue_sessions(double now_s) {
+    std::vector<net::ConnectionId> overdue;
+    for (auto& [id, session] : sessions_) {
+        const double age_s = now_s - session.state_since_s;
+        switch (session.state) {
+            case Session::State::kGreeting:
+                if (age_s > kJoinTimeoutS) overdue.push_back(id);
+                break;
+            case Session::State::kLoading:
+                if (age_s > kLoadTimeoutS) {
+                    refuse(session, "The server cannot reach its ledger; try again later.", now_s);
+                }
+                break;
+            case Session::State::kRefused:
+                if (age_s > kRefusalLingersS) overdue.push_back(id);
+                break;
+            case Session::State::kPlaying:
+                break;
+        }
+    }
+    for (const net::ConnectionId id : overdue) {
+        const bool refused = sessions_.at(id).state == Session::State::kRefused;
+        if (!refused) count("never_joined");
+        kick(id, refused ? net::DisconnectReason::kRefused : net::DisconnectReason::kKicked,
+             refused ? "not admitted" : "did not ask to join");
+    }
+}
+
+void Server::say_what_is_wrong(double now_s) {
+    if (const auto dropped = clock_.overrun_notice(now_s)) {
+        log_(LogLevel::kWarning,
+             "came too late for " + std::to_string(*dropped) +
+                 " ticks, which were dropped; this machine is too slow or busy");
+    }
+    const bool too_soon = last_world_overrun_notice_s_ &&
+                          now_s < *last_world_overrun_notice_s_ + kOverrunNoticeEveryS;
+    if (world_overruns_ != world_overruns_noticed_ && !too_soon) {
+        log_(LogLevel::kWarning, "the event budget ran out in " +
+                                     std::to_string(world_overruns_ - world_overruns_noticed_) +
+                                     " ticks of play");
+        world_overruns_noticed_ = world_overruns_;
+        last_world_overrun_notice_s_ = now_s;
+    }
+}
+
+std::size_t Server::player_count() const {
+    std::size_t players = 0;
+    for (const auto& arena : arenas_) players += arena->players.size();
+    return players;
+}
+
+void Server::shut_down(double now_s, std::string_view goodbye) {
+    if (!admitting_) return;
+    admitting_ = false;
+    for (auto& [id, session] : sessions_) leave_match(session);
+    for (int arena = 0; arena < config_.arenas; ++arena) ledger_.sweep_field(arena);
+    hand_over_transactions();
+    unwritten_ = journal_.finish() + ledger_.pending_count();
+    committed_up_to_ = journal_.drain().committed_up_to;
+    answer_purchases();
+    listener_.close(goodbye);
+    listener_.update(now_s);
+    sessions_.clear();
+}
+
+ServerReport Server::report() const {
+    ServerReport report;
+    for (std::size_t i = 0; i < arenas_.size(); ++i) {
+        const Match& match = arenas_[i]->match;
+        report.arenas.push_back({static_cast<int>(i), match.level_number(), match.scoreboard(),
+                                 match.totals(), match.audit()});
+    }
+    report.coins = ledger_.totals();
+    report.ticks = ticks_;
+    report.clock_overruns = clock_.overruns();
+    report.dropped_ticks = clock_.dropped_ticks();
+    report.joins = joins_;
+    report.store_failures = store_failures_;
+    report.unwritten_transactions = unwritten_;
+    for (const auto& [what, times] : drops_) report.drops[std::string(what)] += times;
+    for (const auto& [what, times] : listener_.drops()) report.drops[std::string(what)] += times;
+    return report;
+}
+
+Session* Server::find(net::ConnectionId id) {
+    const auto found = sessions_.find(id);
+    return found == sessions_.end() ? nullptr : &found->second;
+}
+
+Session* Server::find_ticket(std::uint64_t ticket) {
+    for (auto& [id, session] : sessions_) {
+        if (session.state == Session::State::kLoading && session.load_ticket == ticket) {
+            return &session;
+        }
+    }
+    return nullptr;
+}
+
+bool Server::send(net::ConnectionId id, const replication::ServerMessage& message) {
+    return send_encoded(id, replication::encode(message));
+}
+
+bool Server::send_encoded(net::ConnectionId id, std::span<const std::uint8_t> bytes) {
+    if (listener_.send_reliable(id, bytes)) return true;
+    count("message_not_sent");
+    return false;
+}
+
+}  // namespace fts::server
