@@ -3,9 +3,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fcntl.h>
-#include <unistd.h>
+#include <fstream>
+#include <random>
 
 namespace fts::client {
 namespace {
@@ -24,15 +23,17 @@ fs::path default_path() {
     return fs::path(home) / ".local" / "share" / kFolderName;
 }
 
-bool write_and_sync(int file, const std::string& text) {
-    std::size_t written = 0;
-    while (written < text.size()) {
-        const ssize_t count = ::write(file, text.data() + written, text.size() - written);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return false;
-        written += static_cast<std::size_t>(count);
-    }
-    return ::fsync(file) == 0;
+// Several programs may write at once: each has its own draft.
+fs::path draft_of(const fs::path& path) {
+    std::random_device entropy;
+    return path.string() + ".new." + std::to_string(entropy());
+}
+
+bool write_draft(const fs::path& draft, const std::string& text) {
+    std::ofstream file(draft, std::ios::binary | std::ios::trunc);
+    std::error_code failure;
+    fs::permissions(draft, fs::perms::owner_read | fs::perms::owner_write, failure);
+    return static_cast<bool>(file << text << std::flush);
 }
 
 }  // namespace
@@ -63,19 +64,18 @@ std::optional<net::KeyPair> DataFolder::player_key(std::string& error,
 }
 
 bool write_file_atomically(const fs::path& path, const std::string& text, std::string& error) {
-    // Several programs may write at once: each has its own draft.
-    const std::string draft = path.string() + ".new." + std::to_string(::getpid());
-    const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    bool written = file >= 0 && write_and_sync(file, text);
-    int problem = written ? 0 : errno;
-    if (file >= 0) ::close(file);
-    if (written && std::rename(draft.c_str(), path.c_str()) != 0) {
-        written = false;
-        problem = errno;
+    const fs::path draft = draft_of(path);
+    std::error_code failure;
+    errno = 0;
+    if (write_draft(draft, text)) {
+        fs::rename(draft, path, failure);
+        if (!failure) return true;
+    } else {
+        failure.assign(errno != 0 ? errno : EIO, std::generic_category());
     }
-    if (written) return true;
-    ::unlink(draft.c_str());
-    error = "Cannot write " + path.string() + ": " + std::strerror(problem) +
+    std::error_code ignored;
+    fs::remove(draft, ignored);
+    error = "Cannot write " + path.string() + ": " + failure.message() +
             ". Make room or the folder writable, or give another one with --data.";
     return false;
 }

@@ -1,5 +1,6 @@
 #include "client/core/end_words.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fts::client {

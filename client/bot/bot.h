@@ -1,0 +1,90 @@
+// Bot: one headless player. It plays through client/core exactly as a person's client does, decides
+// with a pilot, does what its script says, and counts what it sees. Time and transport are passed
+// in.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/bot/pilot.h"
+#include "client/bot/script.h"
+#include "client/bot/tally.h"
+#include "client/core/session.h"
+
+namespace fts::bot {
+
+struct BotConfig {
+    int number = 0;
+    client::SessionConfig session;
+    std::string pilot = "chaser";  // a name that make_pilot knows
+    std::uint64_t seed = 1;
+};
+
+class Bot {
+  public:
+    using HitListener = std::function<void(int bot, const replication::CollisionReport& hit)>;
+
+    // Script and transport must outlive the bot.
+    Bot(const BotConfig& config, const Script& script, net::Transport& transport,
+        HitListener on_hit);
+
+    // Several times a tick or less: receives, acts, sends. `now_s` is seconds since the start of
+    // the run.
+    void update(double now_s);
+    void leave(double now_s);
+
+    // Has ended, and no step of its script is left to bring it back.
+    bool finished() const;
+    const Tally& tally() const { return tally_; }
+    // Of the newest session; once connected.
+    std::optional<net::PublicKey> server_key() const { return session_->server_key(); }
+
+  private:
+    void note_status();
+    void note_notices();
+    void note_view(const client::View& view, double now_s);
+    void note_session_stats();
+    void note_hit(const replication::CollisionReport& hit);
+    void note_purchase(const replication::PurchaseResult& result);
+    void happened(Moment moment, double now_s);
+    void run_due_steps(double now_s);
+    void act(const Action& action, double now_s);
+    void go_shopping(const client::View& view);
+    void steer(const client::View& view);
+    void buy(game::Stat stat, const client::View& view);
+    void start_session();
+
+    struct Scheduled {
+        double at_s = 0.0;
+        std::size_t step = 0;
+    };
+
+    BotConfig config_;
+    const Script& script_;
+    net::Transport& transport_;
+    HitListener on_hit_;
+    std::unique_ptr<client::Session> session_;
+    std::unique_ptr<Pilot> pilot_;
+    std::optional<game::InputCommand> held_command_;
+    Rng rng_;
+
+    std::vector<Scheduled> scheduled_;  // by time, then by step
+    std::vector<bool> step_has_fired_;
+    client::Status last_status_ = client::Status::kConnecting;
+    std::optional<game::Phase> last_phase_;
+    std::vector<Moment> moments_;  // since the last update
+    client::View last_view_;
+    double next_decision_s_ = 0.0;
+
+    bool is_ready_ = false;
+    std::optional<std::pair<std::uint64_t, int>> pending_purchase_;  // request id, price in coins
+
+    Tally tally_;
+    client::SessionStats earlier_sessions_;
+};
+
+}  // namespace fts::bot

@@ -1,0 +1,31 @@
+#include "client/bot/pilots/collector.h"
+
+#include <algorithm>
+#include <array>
+
+#include "client/bot/steering.h"
+
+namespace fts::bot {
+namespace {
+
+constexpr std::array kWants = {game::Stat::kMagnet, game::Stat::kTopSpeed, game::Stat::kThrust,
+                               game::Stat::kBraking};
+
+}  // namespace
+
+game::InputCommand Collector::decide(const client::View& view, Rng& rng) {
+    const auto helm = take_helm(view);
+    if (!helm) return {};
+    const auto distance_m = [&](const client::CoinView& coin) {
+        return (coin.position_m - helm->position_m).norm();
+    };
+    const auto nearest = std::ranges::min_element(view.coins, {}, distance_m);
+    if (nearest == view.coins.end()) return meanwhile_.decide(view, rng);
+    return stay_on(*helm, fly_to(*helm, nearest->position_m));
+}
+
+std::span<const game::Stat> Collector::shopping_list() const {
+    return kWants;
+}
+
+}  // namespace fts::bot
