@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "common/game/rules.h"
+#include "common/replication/delta.h"
 
 namespace fts::replication::testing {
 namespace {
@@ -126,6 +127,13 @@ Snapshot wild_successor(Rng& rng, const Snapshot& before, Tick tick) {
     add_some(rng, snapshot.coins, before.coins.size() / 2 + 3);
     add_hits(rng, snapshot);
     return snapshot;
+}
+
+SnapshotPair wild_pair(Rng& rng, std::size_t max_balls) {
+    const auto tick = static_cast<Tick>(pick(rng, 1, 100'000));
+    const Snapshot before = wild_snapshot(rng, tick, max_balls);
+    const auto age_ticks = static_cast<Tick>(pick(rng, 1, kMaxBaselineAgeTicks));
+    return {before, wild_successor(rng, before, tick + age_ticks)};
 }
 
 namespace {

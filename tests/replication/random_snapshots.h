@@ -1,5 +1,5 @@
-// Random canonical snapshots from a seed: wild ones that use every range to its ends, and scenes that
-// move as balls on a platform do.
+// Random canonical snapshots from a seed: wild ones that use every range to its ends, and scenes
+// that move as balls on a platform do.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,23 @@ inline std::int64_t pick(Rng& rng, std::int64_t low, std::int64_t high) {
     const std::uint64_t span = static_cast<std::uint64_t>(high - low) + 1;
     return low + static_cast<std::int64_t>(rng() % span);
 }
-inline bool chance(Rng& rng, int percent) { return pick(rng, 0, 99) < percent; }
+inline bool chance(Rng& rng, int percent) {
+    return pick(rng, 0, 99) < percent;
+}
 
 // Any value of its ranges, small ones and the very ends more often than not.
 Snapshot wild_snapshot(Rng& rng, Tick tick, std::size_t max_balls);
 // What `before` might be some ticks later: entries gone, new, moved, changed in any field.
 Snapshot wild_successor(Rng& rng, const Snapshot& before, Tick tick);
 
-// Balls on a disc of 12 m that thrust, coast and bounce off its edge and, now and then, off each other.
+struct SnapshotPair {
+    Snapshot before, now;
+};
+// `before` can be named as the baseline of `now` (delta.h).
+SnapshotPair wild_pair(Rng& rng, std::size_t max_balls);
+
+// Balls on a disc of 12 m that thrust, coast and bounce off its edge and, now and then, off each
+// other.
 class MovingScene {
   public:
     enum class Drive : std::uint8_t { kCoasting, kSteered };
