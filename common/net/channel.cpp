@@ -7,7 +7,14 @@
 namespace fts::net {
 namespace {
 
-enum class Frame : std::uint8_t { kPayload = 1, kFragment = 2, kGoodbye = 3, kPing = 4 };
+enum class Frame : std::uint8_t {
+    kPayload = 1,
+    kFragment = 2,
+    kGoodbye = 3,
+    kPing = 4,
+    kProbe = 5,
+    kProbeAnswer = 6,
+};
 
 constexpr double kAckDelayUnitS = 1e-4;
 constexpr std::uint16_t kMaxAckDelayUnits = 65535;
@@ -72,6 +79,20 @@ Channel::Written Channel::write_payload(Bytes payload, double now_s, Plaintext o
 Channel::Written Channel::write_ping(double now_s, Plaintext out) {
     ByteWriter writer = begin(now_s, out);
     put_frame(writer, Frame::kPing);
+    return finish(writer, now_s);
+}
+
+Channel::Written Channel::write_probe(std::uint64_t token, double now_s, Plaintext out) {
+    ByteWriter writer = begin(now_s, out);
+    put_frame(writer, Frame::kProbe);
+    writer.put(token);
+    return finish(writer, now_s);
+}
+
+Channel::Written Channel::write_probe_answer(std::uint64_t token, double now_s, Plaintext out) {
+    ByteWriter writer = begin(now_s, out);
+    put_frame(writer, Frame::kProbeAnswer);
+    writer.put(token);
     return finish(writer, now_s);
 }
 
@@ -171,6 +192,12 @@ bool Channel::read_frame(ByteReader& reader, Received& received, bool& asks_answ
         }
         case Frame::kPing:
             return true;
+        case Frame::kProbe:
+            received.probe = reader.take<std::uint64_t>();
+            return reader.ok();
+        case Frame::kProbeAnswer:
+            received.probe_answer = reader.take<std::uint64_t>();
+            return reader.ok();
     }
     return false;
 }

@@ -49,6 +49,8 @@ class Channel {
         std::vector<std::vector<std::uint8_t>> messages;
         std::optional<std::vector<std::uint8_t>> payload;
         std::optional<Goodbye> goodbye;
+        std::optional<std::uint64_t> probe;         // to be answered with the same number
+        std::optional<std::uint64_t> probe_answer;  // to a probe of ours
     };
     // A packet that has been written: it must be sent under this number, and under no other.
     struct Written {
@@ -70,6 +72,9 @@ class Channel {
     Written write_payload(Bytes payload, double now_s, Plaintext out);
     // The same and a frame that makes the other end answer.
     Written write_ping(double now_s, Plaintext out);
+    // Asks whether packets arrive where we send them, by a number that only who reads it can know.
+    Written write_probe(std::uint64_t token, double now_s, Plaintext out);
+    Written write_probe_answer(std::uint64_t token, double now_s, Plaintext out);
     Written write_goodbye(const Goodbye& goodbye, double now_s, Plaintext out);
 
     bool is_fresh(std::uint64_t number) const { return seen_.is_fresh(number); }

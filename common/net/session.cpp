@@ -49,9 +49,12 @@ Session::Outcome Session::receive(const Address& from, Bytes datagram, double no
         ++drops_[drop::kProtocolError];
         return Outcome::kProtocolError;
     }
-    if (!is_proven_ && channel_.sent().newest_acknowledged() >= first_number_there_) {
+    if (!is_proven_ && received.probe_answer == probe_token_) {
         is_proven_ = true;
         proven_address_ = address_;
+    }
+    if (received.probe) {
+        transmit(channel_.write_probe_answer(*received.probe, now_s, plaintext_), now_s);
     }
     if (channel_.owes_answer_at_once()) transmit(channel_.write(now_s, plaintext_), now_s);
     return Outcome::kAccepted;
@@ -69,6 +72,7 @@ void Session::ping(double now_s) {
 
 void Session::update(double now_s) {
     channel_.update(now_s);
+    if (!is_proven_ && now_s - probed_at_s_ >= kProbeIntervalS) probe(now_s);
     while (channel_.has_fragments_due(now_s)) transmit(channel_.write(now_s, plaintext_), now_s);
     if (channel_.owes_answer(now_s)) transmit(channel_.write(now_s, plaintext_), now_s);
     if (now_s - sent_at_s_ >= std::min(kKeepAliveS, timeout_s_ / 4.0)) ping(now_s);
@@ -107,10 +111,18 @@ void Session::follow_address(const Address& from, std::size_t bytes) {
     if (from != address_) {
         address_ = from;
         is_proven_ = from == proven_address_;
-        first_number_there_ = channel_.sent().next_number();
+        std::array<std::uint8_t, sizeof(probe_token_)> random{};
+        fill_random(random);
+        probe_token_ = ByteReader(random).take<std::uint64_t>();
+        probed_at_s_ = -kProbeIntervalS;
         allowance_bytes_ = 0;
     }
     if (!is_proven_) allowance_bytes_ += kUnprovenFactor * bytes;
+}
+
+void Session::probe(double now_s) {
+    probed_at_s_ = now_s;
+    transmit(channel_.write_probe(probe_token_, now_s, plaintext_), now_s);
 }
 
 LinkStats Session::stats() const {

@@ -23,6 +23,8 @@ inline constexpr int kGoodbyeCopies = 4;
 // What may be sent to an address that a session moved to, for each byte that came from it, until
 // the session has proven to receive there (as in RFC 9000, section 8.1).
 inline constexpr std::size_t kUnprovenFactor = 3;
+// How often it is asked to prove it.
+inline constexpr double kProbeIntervalS = 0.1;
 
 // The session that a sealed packet belongs to; nothing when it is not one.
 std::optional<ConnectionId> sealed_packet_id(Bytes datagram);
@@ -53,6 +55,7 @@ class Session {
   private:
     void transmit(const Channel::Written& written, double now_s);
     void follow_address(const Address& from, std::size_t bytes);
+    void probe(double now_s);
 
     ConnectionId id_;
     SessionKeys keys_;
@@ -66,7 +69,8 @@ class Session {
     Address address_;
     Address proven_address_;
     bool is_proven_ = true;
-    std::uint64_t first_number_there_ = 0;
+    std::uint64_t probe_token_ = 0;
+    double probed_at_s_ = 0.0;
     std::size_t allowance_bytes_ = 0;
 
     std::array<std::uint8_t, kMaxPlaintextBytes> plaintext_{};

@@ -215,6 +215,7 @@ TEST(Handshake, the_client_survives_a_server_that_starts_anew_in_the_middle) {
     pair.listener =
         std::make_unique<Listener>(ListenerConfig{.key = pair.server_key}, pair.server_link);
     EXPECT_TRUE(pair.connect(3.0)) << "the old server's cookie must be replaced by a new one";
+    EXPECT_GE(pair.listener->drops().at(drop::kBadCookie), 1U);
 }
 
 }  // namespace
