@@ -125,11 +125,12 @@ int run(const Options& options) {
     if (!resources) return complain(error);
 
     const Log log = open_log(options.log_level);
-    log(LogLevel::kInfo,
-        std::to_string(options.arenas) + " arenas of " + std::to_string(options.players_per_arena) +
-            " players, " + std::to_string(resources->config.levels.size()) + " levels, seed " +
-            std::to_string(options.seed) + ", server key " +
-            net::short_name(resources->config.key.public_key) + ", data in " + options.data_folder);
+    log(LogLevel::kInfo, "arenas: " + std::to_string(options.arenas) +
+                             ", players in each: " + std::to_string(options.players_per_arena) +
+                             ", levels: " + std::to_string(resources->config.levels.size()) +
+                             ", seed: " + std::to_string(options.seed) +
+                             ", data: " + options.data_folder +
+                             ", key: " + net::short_name(resources->config.key.public_key));
     Server server(resources->config, *resources->transport, std::move(resources->store), log);
     std::printf("fts-server: listening on UDP port %u\n",
                 unsigned{resources->transport->local_port()});
@@ -137,7 +138,7 @@ int run(const Options& options) {
 
     DurationHistogram tick_durations;
     serve(server, *resources->transport, tick_durations);
-    log(LogLevel::kInfo, "stopping; " + std::to_string(server.player_count()) + " players leave");
+    log(LogLevel::kInfo, "stopping; players here: " + std::to_string(server.player_count()));
     server.shut_down(monotonic_now_s(), "the server is shutting down");
     return conclude(server, tick_durations, options.report_file);
 }

@@ -5,8 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include "server/limits.h"
-
 namespace fts::server {
 
 namespace {
@@ -32,14 +30,14 @@ Journal::~Journal() {
 
 bool Journal::has_room() const {
     const std::lock_guard lock(mutex_);
-    return unwritten_ < kMaxUnwrittenTransactions;
+    return unwritten_ < config_.max_unwritten;
 }
 
 void Journal::commit(std::vector<Transaction> transactions, std::vector<Rename> renames) {
     if (transactions.empty() && renames.empty()) return;
     {
         const std::lock_guard lock(mutex_);
-        assert(unwritten_ < kMaxUnwrittenTransactions && !give_up_at_);
+        assert(unwritten_ < config_.max_unwritten && !give_up_at_);
         unwritten_ += transactions.size();
         jobs_.push_back(Batch{std::move(transactions), std::move(renames)});
     }

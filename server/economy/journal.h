@@ -20,10 +20,12 @@
 #include <vector>
 
 #include "server/economy/store.h"
+#include "server/limits.h"
 
 namespace fts::server {
 
 struct JournalConfig {
+    std::size_t max_unwritten = kMaxUnwrittenTransactions;
     double first_retry_s = 0.1;     // after a failed commit; doubles with each further failure ...
     double slowest_retry_s = 5.0;   // ... up to this
     double finish_within_s = 10.0;  // how long `finish` keeps trying
@@ -36,7 +38,7 @@ class Journal {
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
 
-    // False while kMaxUnwrittenTransactions (limits.h) wait to be written.
+    // False while `max_unwritten` transactions wait to be written.
     bool has_room() const;
     // Expects `has_room`. Sequences ascend from one call to the next.
     void commit(std::vector<Transaction> transactions, std::vector<Rename> renames);
