@@ -1,8 +1,9 @@
 #include "common/net/identity.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
+#include <cstdio>
 #include <fcntl.h>
 #include <filesystem>
 #include <string_view>
@@ -111,6 +112,14 @@ bool write_all(int descriptor, std::span<const std::uint8_t> text) {
     return ::fsync(descriptor) == 0;
 }
 
+// Never takes the place of a file that is there. Not every file system knows both ways.
+bool put_in_place(const std::string& temporary, const std::string& path) {
+    if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) {
+        return true;
+    }
+    return errno != EEXIST && ::link(temporary.c_str(), path.c_str()) == 0;
+}
+
 // Puts the whole file in place or nothing; false with errno, EEXIST when somebody else was faster.
 bool create_file(const std::string& path, std::span<const std::uint8_t> text) {
     std::array<std::uint8_t, 8> random{};
@@ -122,8 +131,7 @@ bool create_file(const std::string& path, std::span<const std::uint8_t> text) {
         ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
     if (file.get() < 0) return false;
     bool done = write_all(file.get(), text);
-    // A link, unlike a rename, never takes the place of a file that is there.
-    done = done && ::link(temporary.c_str(), path.c_str()) == 0;
+    done = done && put_in_place(temporary, path);
     const int failure = errno;
     ::unlink(temporary.c_str());
     errno = failure;
