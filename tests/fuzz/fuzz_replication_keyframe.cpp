@@ -1,0 +1,19 @@
+// A keyframe's part is any bytes: it decodes to a canonical snapshot that can be sent on unchanged,
+// or to nothing.
+#include <cstdlib>
+#include <span>
+
+#include "common/replication/delta.h"
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace fts::replication;
+    const auto snapshot = decode_part(Snapshot{}, std::span(data, size));
+    if (!snapshot) return 0;
+    if (!is_canonical(*snapshot)) std::abort();
+    if (snapshot->balls.size() + snapshot->coins.size() + snapshot->hits.size() > size)
+        std::abort();
+    const auto parts = encode_delta(Snapshot{}, *snapshot, 2 * size + kAmplePartBytes);
+    if (parts.size() != 1 || decode_part(Snapshot{}, parts.front()) != snapshot) std::abort();
+    return 0;
+}

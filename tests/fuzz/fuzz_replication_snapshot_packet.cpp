@@ -1,0 +1,19 @@
+// A snapshot packet is any bytes: it carries a part that says what it is part of, or is nothing.
+#include <algorithm>
+#include <cstdlib>
+#include <span>
+
+#include "common/replication/delta.h"
+#include "common/replication/wire.h"
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace fts::replication;
+    const std::span<const std::uint8_t> bytes(data, size);
+    const auto packet = decode_snapshot_packet(bytes);
+    if (!packet) return 0;
+    if (!peek_part(packet->part)) std::abort();
+    const auto again = encode(*packet);
+    if (!std::equal(again.begin(), again.end(), bytes.begin(), bytes.end())) std::abort();
+    return 0;
+}
