@@ -61,6 +61,7 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
      "common/replication/wire.cpp server/match/level_file.cpp", true},
     {"SDL", "SDL", "client/sdl", false},
     {"Dear ImGui", "imgui", "client/sdl", false},
+    {"stb", "stb_", "client/sdl", true},
     {"SQLite", "sqlite3.h", "server/economy", true},
     {"CLI11", "CLI/", "server/main.cpp server/ops client/sdl/main.cpp client/bot/main.cpp", false},
     {"spdlog", "spdlog/ fmt/", "server/main.cpp server/ops client/sdl/main.cpp client/bot/main.cpp",
