@@ -19,6 +19,13 @@ enum class Frame : std::uint8_t {
 constexpr double kAckDelayUnitS = 1e-4;
 constexpr std::uint16_t kMaxAckDelayUnits = 65535;
 
+// The reasons travel as their numbers.
+static_assert(static_cast<int>(DisconnectReason::kTimeout) == 1);
+static_assert(static_cast<int>(DisconnectReason::kServerFull) == 3);
+static_assert(static_cast<int>(DisconnectReason::kRefused) == 5);
+static_assert(static_cast<int>(DisconnectReason::kProtocolError) == 7);
+static_assert(static_cast<int>(DisconnectReason::kKicked) == 8);
+
 // What an end may say of its leaving; anything else is taken for a plain goodbye.
 DisconnectReason reason_from_wire(std::uint8_t reason) {
     switch (static_cast<DisconnectReason>(reason)) {

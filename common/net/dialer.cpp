@@ -16,8 +16,6 @@ constexpr double kFirstRetryS = 0.2;
 constexpr double kRetryGrowth = 1.5;
 constexpr double kMaxRetryS = 0.5;
 
-constexpr std::size_t kMaxWaitingEvents = 65536;
-
 std::string seconds(double duration_s) {
     return std::to_string(static_cast<int>(std::lround(duration_s))) + " s";
 }

@@ -10,13 +10,6 @@
 #include "common/net/session.h"
 
 namespace fts::net {
-namespace {
-
-// Events wait for the next drain; when so many do, packets are dropped until then (and are sent
-// again by those who want them to arrive).
-constexpr std::size_t kMaxWaitingEvents = 65536;
-
-}  // namespace
 
 struct Listener::Impl {
     struct Established {

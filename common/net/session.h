@@ -16,6 +16,9 @@ namespace fts::net {
 
 // First byte of a sealed packet; no handshake packet begins with it.
 inline constexpr std::uint8_t kSealedMarker = 'S';
+// Events wait for the next drain. When so many do, packets are dropped until then; what is reliable
+// is sent again.
+inline constexpr std::size_t kMaxWaitingEvents = 65536;
 // A session that has nothing to say says so this often.
 inline constexpr double kKeepAliveS = 0.5;
 // A goodbye is not acknowledged, so it is said more than once.

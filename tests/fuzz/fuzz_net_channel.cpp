@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "common/net/channel.h"
+#include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace fts::net;

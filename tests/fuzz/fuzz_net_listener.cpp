@@ -12,6 +12,7 @@
 #include "common/net/connection.h"
 #include "common/net/handshake.h"
 #include "common/net/session.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 

@@ -23,6 +23,26 @@ TEST(Handshake, both_ends_report_each_others_key_once) {
     EXPECT_EQ(pair.listener->connection_count(), 1U);
 }
 
+TEST(Handshake, is_the_five_packets_that_are_written_down_and_of_their_size) {
+    Pair pair;
+    ASSERT_TRUE(pair.connect(1.0));
+    const std::vector<std::pair<PacketType, std::size_t>> expected{{PacketType::kHello, 1200},
+                                                                   {PacketType::kCookie, 71},
+                                                                   {PacketType::kConnect, 1200},
+                                                                   {PacketType::kResponse, 139},
+                                                                   {PacketType::kFinish, 75}};
+    ASSERT_GT(pair.network.sent.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const Datagram& bytes = pair.network.sent[i].bytes;
+        const Datagram start{'F', 'T', 'S', 'A', static_cast<std::uint8_t>(expected[i].first),
+                             1,   0};
+        EXPECT_EQ(Datagram(bytes.begin(), bytes.begin() + kHeaderBytes), start);
+        EXPECT_EQ(bytes.size(), expected[i].second);
+    }
+    EXPECT_EQ(pair.network.sent[expected.size()].bytes[0], 'S');
+    EXPECT_EQ(encode(Refused{}, 1).size(), 40U);
+}
+
 TEST(Handshake, succeeds_when_three_packets_in_ten_are_lost_each_way) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
