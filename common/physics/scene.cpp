@@ -18,7 +18,8 @@ std::string text_of(double value) {
 }
 
 std::string text_of(const Vec2d& value) {
-    return "(" + text_of(value.x()) + ", " + text_of(value.y()) + ")";
+    return std::string("(").append(text_of(value.x())).append(", ").append(text_of(value.y())) +
+           ")";
 }
 
 SceneError refuse(const std::string& field, const std::string& value, const std::string& remedy) {
