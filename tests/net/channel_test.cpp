@@ -179,6 +179,66 @@ TEST(Channel, a_dead_road_is_not_flooded_with_resends) {
     EXPECT_GE(ends.to_b.packets, 32U * 2U) << "it should still be trying";
 }
 
+TEST(Channel, a_large_message_is_sent_at_a_steady_rate_and_not_all_at_once) {
+    ReliableSender sender;
+    while (sender.queue(std::vector<std::uint8_t>(kMaxMessageBytes))) {
+    }
+    double now_s = 0.0;
+    double bytes = 0.0;
+    while (sender.queued_bytes() > 0) {
+        ASSERT_LE(bytes, kReliableBurstBytes + now_s * kReliableBytesPerS + kFragmentBytes);
+        sender.update(now_s, 0.1);
+        while (const Fragment* fragment = sender.due(now_s, kFragmentBytes)) {
+            bytes += static_cast<double>(fragment->bytes.size());
+            const std::uint64_t number = fragment->number;
+            sender.mark_sent(number, now_s);
+            sender.acknowledge(number);
+        }
+        now_s += kStepS;
+    }
+    EXPECT_EQ(bytes, static_cast<double>(kMaxQueuedBytes));
+}
+
+// How many fragments leave before any is acknowledged.
+std::size_t under_way_at_once(ReliableSender& sender, double now_s) {
+    sender.update(now_s, 0.1);
+    std::vector<std::uint64_t> numbers;
+    while (const Fragment* fragment = sender.due(now_s, kFragmentBytes)) {
+        numbers.push_back(fragment->number);
+        sender.mark_sent(fragment->number, now_s);
+    }
+    for (const std::uint64_t number : numbers) sender.acknowledge(number);
+    return numbers.size();
+}
+
+TEST(Channel, losses_make_it_send_fewer_at_once_and_arrivals_more_again) {
+    ReliableSender sender;
+    const auto fill = [&] {
+        while (sender.queue(std::vector<std::uint8_t>(10))) {
+        }
+    };
+    fill();
+    const std::size_t before = under_way_at_once(sender, 0.0);
+    for (int loss = 0; loss < 3; ++loss) {
+        const double now_s = 10.0 * (loss + 1);
+        sender.update(now_s, 0.1);
+        const std::uint64_t number = sender.due(now_s, kFragmentBytes)->number;
+        sender.mark_sent(number, now_s);
+        sender.mark_sent(number, now_s + 5.0);
+        sender.acknowledge(number);
+    }
+    fill();
+    const std::size_t after = under_way_at_once(sender, 50.0);
+    EXPECT_LE(after, before / 4);
+    EXPECT_GE(after, 1U);
+    for (int i = 0; i < 100; ++i) {
+        fill();
+        under_way_at_once(sender, 60.0 + i);
+    }
+    fill();
+    EXPECT_GT(under_way_at_once(sender, 200.0), before);
+}
+
 TEST(Channel, the_round_trip_is_measured_about_right_and_in_spite_of_waiting_acknowledgements) {
     TwoEnds ends(11, 0.02, 0.05, 0.03);
     std::array<std::uint8_t, kMaxPlaintextBytes> plaintext;

@@ -92,7 +92,7 @@ TEST(Handshake, a_cookie_is_worth_nothing_at_another_address) {
     const auto cookie = decode_cookie(pair.network.sent.back().bytes);
     ASSERT_TRUE(cookie);
     const Datagram connect = encode(Connect{cookie->echo, cookie->cookie}, kProtocolVersion);
-    forge(pair, address_of(66), connect);
+    forge(pair, address_of(66, pair.client_address.port), connect);
     EXPECT_EQ(pair.listener->drops().at(drop::kBadCookie), 1U);
     Address other_port = pair.client_address;
     ++other_port.port;
@@ -224,6 +224,43 @@ TEST(Handshake, a_forged_response_does_not_spoil_the_true_one) {
         pair.dialer->receive(pair.server_address, encode(forged, kProtocolVersion), pair.now_s);
         pair.tick();
     }
+    EXPECT_TRUE(pair.connect(1.0));
+}
+
+TEST(Handshake, the_same_connect_gets_the_same_response_and_no_second_place) {
+    Pair pair;
+    pair.run_until([&] { return pair.network.sent.size() >= 4; }, 1.0);
+    const Datagram connect = pair.network.sent.at(2).bytes;
+    const Datagram response = pair.network.sent.at(3).bytes;
+    ASSERT_EQ(decode_header(connect)->type, PacketType::kConnect);
+    pair.listener->receive(pair.client_address, connect, pair.now_s);
+    EXPECT_EQ(pair.network.sent.back().bytes, response);
+}
+
+TEST(Handshake, a_finish_heard_again_is_answered_until_the_client_knows_and_only_where_it_is) {
+    Pair pair;
+    ASSERT_TRUE(pair.connect(1.0));
+    const Datagram finish = pair.network.sent.at(4).bytes;
+    ASSERT_EQ(decode_header(finish)->type, PacketType::kFinish);
+    const std::size_t before = pair.network.sent.size();
+    pair.listener->receive(pair.client_address, finish, pair.now_s);
+    ASSERT_EQ(pair.network.sent.size(), before + 1);
+    EXPECT_EQ(pair.network.sent.back().bytes[0], 'S');
+    EXPECT_LE(pair.network.sent.back().bytes.size(), finish.size());
+    pair.listener->receive(address_of(66), finish, pair.now_s);
+    EXPECT_EQ(pair.network.sent.size(), before + 1);
+    EXPECT_EQ(pair.listener->connection_count(), 1U);
+}
+
+TEST(Handshake, a_finish_from_another_address_than_the_proven_one_opens_nothing) {
+    Pair pair;
+    pair.run_until([&] { return pair.network.sent.size() >= 5; }, 1.0);
+    const Datagram finish = pair.network.sent.at(4).bytes;
+    ASSERT_EQ(decode_header(finish)->type, PacketType::kFinish);
+    ASSERT_EQ(pair.listener->connection_count(), 0U);
+    pair.listener->receive(address_of(66), finish, pair.now_s);
+    EXPECT_EQ(pair.listener->connection_count(), 0U);
+    EXPECT_EQ(pair.listener->drops().at(drop::kUnknownSession), 1U);
     EXPECT_TRUE(pair.connect(1.0));
 }
 

@@ -118,6 +118,14 @@ TEST(Session, an_idle_pair_stays_connected_without_much_talk) {
     EXPECT_LT(pair.dialer->stats().packets_sent - before, 6U * 60U);
 }
 
+TEST(Session, an_answer_is_not_answered) {
+    Pair pair;
+    ASSERT_TRUE(pair.connect());
+    const std::uint64_t before = pair.dialer->stats().packets_sent;
+    pair.run(60.0);
+    EXPECT_LT(pair.dialer->stats().packets_sent - before, 5U * 60U);
+}
+
 TEST(Session, the_link_is_measured_about_right) {
     Pair pair({.delay_s = 0.025, .jitter_s = 0.015, .seed = 4});
     ASSERT_TRUE(pair.connect());
