@@ -63,7 +63,7 @@ void Bot::start_session() {
     last_phase_.reset();
     last_view_ = {};
     pending_purchase_.reset();
-    is_ready_ = false;
+    is_ready_ = was_refused_ = false;
     tally_.ended_because.clear();
 }
 
@@ -144,6 +144,7 @@ void Bot::note_purchase(const replication::PurchaseResult& result) {
     ++(bought ? tally_.purchases : tally_.purchases_refused);
     if (!pending_purchase_ || pending_purchase_->first != result.request_id) return;
     if (bought) tally_.coins_spent += pending_purchase_->second;
+    was_refused_ = !bought;
     pending_purchase_.reset();
 }
 
@@ -159,7 +160,7 @@ void Bot::note_view(const client::View& view, double now_s) {
     }
     if (last_phase_ == view.phase) return;
     last_phase_ = view.phase;
-    is_ready_ = false;
+    is_ready_ = was_refused_ = false;
     if (const auto moment = moment_of(view.phase)) happened(*moment, now_s);
 }
 
@@ -214,9 +215,10 @@ void Bot::buy(game::Stat stat, const client::View& view) {
 
 void Bot::go_shopping(const client::View& view) {
     if (view.phase != game::Phase::kShop || is_ready_ || pending_purchase_) return;
-    const auto wanted = script_.auto_shop
-                            ? next_purchase(pilot_->shopping_list(), view.tiers, view.coins_held)
-                            : std::nullopt;
+    std::optional<game::Stat> wanted;
+    if (script_.auto_shop && !was_refused_) {
+        wanted = next_purchase(pilot_->shopping_list(), view.tiers, view.coins_held);
+    }
     if (wanted) {
         buy(*wanted, view);
     } else if (script_.auto_ready) {

@@ -81,6 +81,7 @@ class Bot {
     double next_decision_s_ = 0.0;
 
     bool is_ready_ = false;
+    bool was_refused_ = false;  // in this visit to the shop: asking again would not help
     std::optional<std::pair<std::uint64_t, int>> pending_purchase_;  // request id, price in coins
 
     Tally tally_;

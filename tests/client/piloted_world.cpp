@@ -1,0 +1,77 @@
+#include "tests/client/piloted_world.h"
+
+#include <optional>
+
+#include "common/game/rules.h"
+
+namespace fts::bot {
+namespace {
+
+physics::Scene scene_of(const physics::Platform& platform,
+                        const std::vector<physics::BodyDef>& balls) {
+    physics::Scene scene;
+    scene.bodies = balls;
+    scene.platform = platform;
+    return scene;
+}
+
+}  // namespace
+
+PilotedWorld::PilotedWorld(const physics::Platform& platform,
+                           const std::vector<physics::BodyDef>& balls, int lag_ticks)
+    : platform_(platform),
+      world_(scene_of(platform, balls)),
+      ids_(world_.ids().begin(), world_.ids().end()),
+      lag_ticks_(static_cast<std::size_t>(lag_ticks)) {}
+
+void PilotedWorld::add_coin(const physics::Vec2d& position_m) {
+    coins_.push_back({static_cast<std::uint16_t>(coins_.size() + 1), position_m, 1});
+}
+
+double PilotedWorld::seconds() const {
+    return ticks_ * game::kTickDurationS;
+}
+
+client::View PilotedWorld::view() const {
+    client::View view;
+    view.server_time_s = seconds();
+    view.phase = game::Phase::kPlaying;
+    view.level.platform = platform_;
+    view.own_player_id = 1;
+    view.coins = coins_;
+    view.link.interpolation_delay_s = static_cast<double>(lag_ticks_) * game::kTickDurationS;
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        if (!world_.contains(ids_[i])) continue;
+        const auto body = world_.body(ids_[i]);
+        client::BallView ball;
+        ball.id = static_cast<std::uint16_t>(i + 1);
+        ball.position_m = body.position_m;
+        ball.velocity_mps = body.velocity_mps;
+        ball.radius_m = body.radius_m;
+        ball.mass_kg = body.mass_kg;
+        ball.is_player = ball.is_own = i == 0;
+        if (ball.is_own) view.own_ball = view.balls.size();
+        view.balls.push_back(ball);
+    }
+    return view;
+}
+
+void PilotedWorld::tick(Pilot& pilot, Rng& rng) {
+    seen_.push_back(view());
+    if (seen_.size() > lag_ticks_ + 1) seen_.pop_front();
+    if (pilot_is_on()) {
+        const game::InputCommand command = pilot.decide(seen_.front(), rng);
+        world_.set_control(ids_.front(), game::control_for(stats_, command));
+        const auto dash_mps = game::advance_dash(dash_, stats_, command, game::kTickRateHz);
+        const auto own = world_.body(ids_.front());
+        if (dash_mps) world_.set_velocity(ids_.front(), own.velocity_mps + *dash_mps);
+        std::erase_if(coins_, [&](const client::CoinView& coin) {
+            return (coin.position_m - own.position_m).norm() <
+                   own.radius_m + game::kCoinRadiusM + stats_.magnet_range_m;
+        });
+    }
+    world_.step(game::kTickDurationS);
+    ++ticks_;
+}
+
+}  // namespace fts::bot
