@@ -3,6 +3,9 @@ function(fts_room name)
     cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(${name} STATIC ${ROOM_SOURCES})
     target_link_libraries(${name} PUBLIC fts_flags ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+    if(FTS_PRECOMPILE)
+        target_precompile_headers(${name} REUSE_FROM fts_precompiled)
+    endif()
 endfunction()
 
 # fts_program(NAME SOURCES... LIBS...): an executable under build/<preset>/bin.
