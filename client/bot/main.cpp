@@ -162,7 +162,6 @@ int run(Options& options) {
     report.problems = crowd->problems();
     std::fputs(bot::as_tables(report).c_str(), stdout);
     std::fflush(stdout);
-    if (!anybody_joined(report)) std::fprintf(stderr, "fts-bot: nobody could join.\n");
     if (!options.json.empty() &&
         !(std::ofstream(options.json) << bot::as_json(report) << std::flush)) {
         std::fprintf(stderr, "fts-bot: cannot write %s. Give --json a file that can be written.\n",

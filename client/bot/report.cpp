@@ -112,11 +112,14 @@ nlohmann::ordered_json metrics_of(std::span<const Tally> tallies) {
 std::string as_tables(const Report& report) {
     char summary[160];
     std::snprintf(summary, sizeof summary,
-                  "%zu bots played for %.1f s, updated at %.0f Hz (longest gap %.0f ms)\n",
-                  report.tallies.size(), report.seconds, report.loop_mean_hz,
-                  report.loop_longest_gap_s * 1e3);
-    std::string text = summary;
-    for (const auto& columns : kTables) text += "\n" + table(columns, report.tallies);
+                  "%zu %s played for %.1f s, updated at %.0f Hz (longest gap %.0f ms)\n",
+                  report.tallies.size(), report.tallies.size() == 1 ? "bot" : "bots",
+                  report.seconds, report.loop_mean_hz, report.loop_longest_gap_s * 1e3);
+    const bool anybody_joined = std::ranges::any_of(report.tallies, &Tally::joined);
+    std::string text = anybody_joined ? summary : "No bot could join.\n";
+    for (const auto& columns : kTables) {
+        if (anybody_joined) text += "\n" + table(columns, report.tallies);
+    }
     const std::string ended = reasons(report.tallies);
     if (!ended.empty()) text += "\n" + ended;
     if (!report.verdicts.empty()) text += "\n" + verdict_lines(report.verdicts);

@@ -6,7 +6,8 @@
 namespace fts::client {
 
 void InterpolationDelay::observe(double needed_s, double arrival_s) {
-    const double elapsed_s = measured_ ? std::max(0.0, arrival_s - last_arrival_s_) : 0.0;
+    const bool is_first = !measured_;
+    const double elapsed_s = is_first ? 0.0 : std::max(0.0, arrival_s - last_arrival_s_);
     measured_ = true;
     last_arrival_s_ = arrival_s;
     double wanted_s = std::max(0.0, needed_s) + kDelayMarginS;
@@ -14,7 +15,7 @@ void InterpolationDelay::observe(double needed_s, double arrival_s) {
         ++limited_count_;
         wanted_s = kMaxDelayS;
     }
-    if (wanted_s >= delay_s_) {
+    if (is_first || wanted_s >= delay_s_) {
         delay_s_ = wanted_s;
     } else {
         delay_s_ += (wanted_s - delay_s_) * (1.0 - std::exp(-elapsed_s / kDelayFallS));

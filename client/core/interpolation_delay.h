@@ -6,6 +6,7 @@
 
 namespace fts::client {
 
+// Until the first measurement.
 inline constexpr double kInitialDelayS = 0.1;
 // A longer stall is seen as a stall rather than paid for in latency by every later frame.
 inline constexpr double kMaxDelayS = 0.4;

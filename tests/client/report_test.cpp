@@ -89,6 +89,15 @@ TEST(Report, shows_only_the_whole_of_a_crowd) {
     EXPECT_THAT(crowd, HasSubstr("all 100"));
 }
 
+TEST(Report, shows_why_instead_of_empty_tables_when_nobody_joined) {
+    Report report = report_of(2);
+    for (Tally& tally : report.tallies) {
+        tally.joined = false;
+        tally.ended_because = "No answer.";
+    }
+    EXPECT_EQ(as_tables(report), "No bot could join.\n\nEnded, 2 bots: No answer.\n");
+}
+
 TEST(Report, tells_each_reason_for_an_end_once_with_how_many_it_met) {
     Report report = report_of(3);
     report.tallies[0].ended_because = report.tallies[2].ended_because = "It was full.";

@@ -114,8 +114,16 @@ TEST(PacedClock, stands_still_while_its_target_is_far_behind) {
 
 TEST(InterpolationDelay, goes_up_at_once) {
     InterpolationDelay delay;
-    delay.observe(0.25, 1.0);
+    delay.observe(kSnapshotS, 1.0);
+    delay.observe(0.25, 1.1);
     EXPECT_DOUBLE_EQ(delay.delay_s(), 0.25 + kDelayMarginS);
+}
+
+TEST(InterpolationDelay, begins_with_what_the_first_arrival_needed) {
+    InterpolationDelay delay;
+    EXPECT_DOUBLE_EQ(delay.delay_s(), kInitialDelayS);
+    delay.observe(kSnapshotS, 1.0);
+    EXPECT_DOUBLE_EQ(delay.delay_s(), kSnapshotS + kDelayMarginS);
 }
 
 TEST(InterpolationDelay, comes_down_slowly_and_all_the_way) {
