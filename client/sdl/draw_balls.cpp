@@ -9,7 +9,7 @@ namespace fts::sdl {
 namespace {
 
 constexpr double kVelocityArrowS = 0.45;  // an arrow reaches where the ball would be by then
-constexpr double kMomentumArrowMPerNs = 0.45;
+constexpr double kMomentumArrowMPerNs = 0.25;
 constexpr double kMinArrowSpeedMps = 0.05;
 constexpr float kSmallestRadius = 5;
 
@@ -19,9 +19,9 @@ float drawn_radius(const Canvas& canvas, const Camera& camera, const client::Bal
 
 void draw_shadow(const Canvas& canvas, ImVec2 centre, float radius, double opacity) {
     const ImVec2 below{centre.x + radius * 0.10F, centre.y + radius * 0.34F};
-    const Colour dark = fade(palette::kInk, 0.55 * opacity);
-    canvas.gradient_ring(below, 0, dark, radius * 0.80F, dark);
-    canvas.gradient_ring(below, radius * 0.80F, dark, radius * 1.35F, fade(dark, 0.0));
+    const Colour dark = fade(palette::kInk, 0.6 * opacity);
+    // The hole of the ring lies under the ball.
+    canvas.gradient_ring(below, radius * 0.55F, dark, radius * 1.35F, fade(dark, 0.0));
 }
 
 // Where it pushes: a wedge of light just outside the ball.
@@ -52,7 +52,7 @@ void draw_words(const Canvas& canvas, const client::BallView& ball, ImVec2 centr
     if (!ball.is_player) return;
     const float top = centre.y - radius - gap - canvas.px(ball.is_own ? 13 : 9);
     const std::string name =
-        canvas.elided(TextStyle::kCaption, ball.is_own ? "You" : ball.name, canvas.px(110));
+        canvas.elided(TextStyle::kCaption, ball.is_own ? "You" : ball.name, canvas.px(84));
     canvas.text_middle({centre.x, top}, ball.is_own ? TextStyle::kStrong : TextStyle::kCaption,
                        ball.is_own ? palette::kText : fade(palette::kText, 0.85), name,
                        Align::kCentre, ball.is_own ? canvas.px(14) : 0.0F);
@@ -100,13 +100,15 @@ void draw_rubber_ball(const Canvas& canvas, ImVec2 centre, float radius, const B
     const Colour light = fade(mix(look.colour, palette::kText, 0.30), look.opacity);
     const Colour dark = fade(mix(look.colour, palette::kInk, 0.22), look.opacity);
     const ImVec2 focus{centre.x - radius * 0.30F, centre.y - radius * 0.34F};
-    canvas.gradient_disc(centre, radius, focus, light, mix(body, dark, 0.8));
+    canvas.gradient_disc(centre, radius - 0.8F, focus, light, mix(body, dark, 0.8));
 
     const auto weight = static_cast<float>(std::clamp(look.mass_kg, 0.2, 4.0));
     const float thickness = radius * std::clamp(0.07F + 0.085F * weight, 0.08F, 0.40F);
     canvas.ring(centre, radius - thickness * 0.5F, fade(dark, 0.75), thickness);
-    canvas.ring(centre, radius, fade(mix(look.colour, palette::kInk, 0.6), look.opacity),
-                std::max(1.2F, canvas.px(1.2F)));
+    // Covers the shading's edge, which is not anti-aliased.
+    const float rim = std::max(1.8F, canvas.px(1.4F));
+    canvas.ring(centre, radius - rim * 0.5F,
+                fade(mix(look.colour, palette::kInk, 0.55), look.opacity), rim);
     const ImVec2 spot{centre.x - radius * 0.36F, centre.y - radius * 0.42F};
     canvas.gradient_ring(spot, 0, fade(palette::kText, 0.55 * look.opacity), radius * 0.34F,
                          fade(palette::kText, 0.0));
@@ -161,12 +163,16 @@ void draw_behaviour_glyph(const Canvas& canvas, ImVec2 centre, float size,
     }
 }
 
+void draw_own_ball(const Canvas& canvas, const Camera& camera, const client::View& view) {
+    if (view.own_ball) draw_one(canvas, camera, view.balls[*view.own_ball]);
+}
+
 void draw_balls(const Canvas& canvas, const Camera& camera, const client::View& view,
                 const Arrows& arrows) {
     for (const client::BallView& ball : view.balls) {
         if (!ball.is_own) draw_one(canvas, camera, ball);
     }
-    if (view.own_ball) draw_one(canvas, camera, view.balls[*view.own_ball]);
+    draw_own_ball(canvas, camera, view);
     for (const client::BallView& ball : view.balls) draw_arrows(canvas, camera, ball, arrows);
 }
 

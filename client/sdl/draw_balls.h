@@ -26,6 +26,8 @@ struct Arrows {
 };
 void draw_balls(const Canvas& canvas, const Camera& camera, const client::View& view,
                 const Arrows& arrows);
+// Once more, above something that dims the others.
+void draw_own_ball(const Canvas& canvas, const Camera& camera, const client::View& view);
 
 Colour ball_colour(const client::BallView& ball);
 

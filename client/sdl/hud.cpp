@@ -102,7 +102,7 @@ void draw_dash(const Canvas& canvas, ImVec2 at, float width, const client::View&
     }
 }
 
-void draw_own_ball(const Canvas& canvas, const client::View& view, const HudState& state) {
+void draw_own_readings(const Canvas& canvas, const client::View& view, const HudState& state) {
     const float left = canvas.px(space::kMargin), width = canvas.px(space::kSidePanel);
     const float top = canvas.size.y - canvas.px(space::kMargin + 128);
     const replication::PlayerInfo* own = view.own_player();
@@ -221,13 +221,13 @@ void draw_keys(const Canvas& canvas, const HudState& state) {
         {"T", "chat"},
         {"H", "hide these keys"},
     };
-    const float left = canvas.size.x - canvas.px(space::kMargin + 168);
+    const float left = canvas.size.x - canvas.px(space::kMargin + space::kSidePanel - 9);
     const float row = canvas.px(24);
     float y =
         canvas.size.y - canvas.px(space::kMargin + 30) - row * static_cast<float>(keys.size());
     for (const Key& key : keys) {
         key_cap(canvas, {left, y}, key.cap);
-        canvas.text_middle({left + canvas.px(70), y + canvas.px(10)}, TextStyle::kCaption,
+        canvas.text_middle({left + canvas.px(76), y + canvas.px(10)}, TextStyle::kCaption,
                            palette::kTextFaint, key.does, Align::kLeft);
         y += row;
     }
@@ -260,9 +260,10 @@ void announce(const Canvas& canvas, const std::string& title, const std::string&
                      palette::kTextQuiet, detail, Align::kCentre);
 }
 
-void draw_countdown(const Canvas& canvas, const client::View& view) {
+void draw_countdown(const Canvas& canvas, const Camera& camera, const client::View& view) {
     const ImVec2 centre = stage_of(canvas).centre();
     draw_hush(canvas, centre, canvas.px(290));
+    draw_own_ball(canvas, camera, view);
     canvas.text_middle({centre.x, centre.y - canvas.px(96)}, TextStyle::kCaption,
                        palette::kTextQuiet, "LEVEL " + std::to_string(view.level.number),
                        Align::kCentre);
@@ -289,21 +290,21 @@ void draw_hud(const Canvas& canvas, const client::View& view, const HudState& st
     draw_level(canvas, view);
     draw_feed(canvas, state);
     draw_chat(canvas, state);
-    draw_own_ball(canvas, view, state);
+    draw_own_readings(canvas, view, state);
     draw_coins_held(canvas, view);
     draw_players(canvas, view);
     if (state.shows_keys) draw_keys(canvas, state);
     draw_link(canvas, view);
 }
 
-void draw_announcement(const Canvas& canvas, const client::View& view) {
+void draw_announcement(const Canvas& canvas, const Camera& camera, const client::View& view) {
     const replication::PlayerInfo* own = view.own_player();
     switch (view.phase) {
         case game::Phase::kWaiting:
             announce(canvas, "Waiting", "The arena rests until somebody plays.");
             break;
         case game::Phase::kCountdown:
-            draw_countdown(canvas, view);
+            draw_countdown(canvas, camera, view);
             break;
         case game::Phase::kPlaying:
             if (view.own_ball || own == nullptr) break;

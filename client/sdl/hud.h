@@ -5,6 +5,7 @@
 #include <string>
 
 #include "client/core/view.h"
+#include "client/sdl/camera.h"
 #include "client/sdl/canvas.h"
 
 namespace fts::sdl {
@@ -30,6 +31,6 @@ Box stage_of(const Canvas& canvas);
 void draw_hud(const Canvas& canvas, const client::View& view, const HudState& state);
 
 // What is said in the middle of the arena: countdown, waiting, out of the game; often nothing.
-void draw_announcement(const Canvas& canvas, const client::View& view);
+void draw_announcement(const Canvas& canvas, const Camera& camera, const client::View& view);
 
 }  // namespace fts::sdl

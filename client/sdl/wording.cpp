@@ -75,13 +75,13 @@ std::string signed_fixed(double value, int decimals) {
 std::string scientific(double value) {
     if (value == 0.0) return "0";
     if (!std::isfinite(value)) return "\xe2\x80\x93";
-    int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
-    double mantissa = value / std::pow(10.0, exponent);
-    if (std::abs(mantissa) >= 9.95) {
-        mantissa /= 10.0;
-        ++exponent;
-    }
-    return fixed(mantissa, 1) + " \xc3\x97 10" + superscript(exponent);
+    std::array<char, 32> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.1e", value);
+    const std::string printed_value = buffer.data();
+    const std::size_t e = printed_value.find('e');
+    std::string mantissa = printed_value.substr(0, e);
+    if (mantissa.starts_with('-')) mantissa = kMinus + mantissa.substr(1);
+    return mantissa + " \xc3\x97 10" + superscript(std::stoi(printed_value.substr(e + 1)));
 }
 
 std::string clock_time(double seconds) {
@@ -139,7 +139,7 @@ std::string other_name(const client::View& view, const Hit& hit) {
     return behaviour_name(ball->behaviour);
 }
 
-std::string explain(const client::View& view, const Hit& hit) {
+std::string explain(const Hit& hit) {
     const double own_kg = hit.own.mass_kg, other_kg = hit.other.mass_kg;
     if (!(own_kg > 0.0) || !(other_kg > 0.0)) return "";
     const physics::Vec2d towards = -hit.normal;
@@ -149,7 +149,6 @@ std::string explain(const client::View& view, const Hit& hit) {
     const double given = 2.0 * own_kg / (own_kg + other_kg);
     const double taken = 2.0 * other_kg / (own_kg + other_kg);
     const std::string start = mass_clause(own_kg / other_kg);
-    const std::string name = other_name(view, hit);
 
     constexpr double kAtRest = 0.03;
     if (std::abs(other_mps) < kAtRest * std::abs(own_mps)) {
@@ -160,12 +159,12 @@ std::string explain(const client::View& view, const Hit& hit) {
     }
     if (std::abs(own_mps) < kAtRest * std::abs(other_mps)) {
         return start + "you left with " + percent(taken) +
-               " of its speed along the line of centres. You were hit, not hitting.";
+               " of its speed along the line of centres. You were the one being hit.";
     }
     return start + "you closed at " + fixed(closing_mps, 2) +
-           " m/s along the line of centres and part at the same rate. It took a change of " +
-           percent(given) + " of that, you " + percent(taken) + " (" + name + " is the " +
-           (own_kg >= other_kg ? "lighter" : "heavier") + " one).";
+           " m/s along the line of centres and parted at the same rate. Your speed along it "
+           "changed by " +
+           percent(taken) + " of that, the other's by " + percent(given) + ".";
 }
 
 std::string knock_off_line(const client::View& view, const replication::KnockOff& knock_off,

@@ -31,7 +31,7 @@ HitSums sums_of(const replication::CollisionReport& hit);
 // The other party of a hit: "Ana", "the chaser", "an AI ball".
 std::string other_name(const client::View& view, const replication::CollisionReport& hit);
 // One sentence that says what masses and geometry did.
-std::string explain(const client::View& view, const replication::CollisionReport& hit);
+std::string explain(const replication::CollisionReport& hit);
 
 std::string knock_off_line(const client::View& view, const replication::KnockOff& knock_off,
                            const std::string& victim);

@@ -165,10 +165,11 @@ client::View fallen_view() {
 }
 
 replication::CollisionReport oblique_hit(double own_kg, double other_kg,
-                                         const Vec2d& other_velocity_mps) {
+                                         const Vec2d& other_velocity_mps,
+                                         const Vec2d& own_velocity_mps) {
     replication::CollisionReport hit;
     hit.tick = 4213;
-    hit.own = {1, kOwnId, own_kg, 0.5, {0.2, -0.1}, {4.6, 1.9}, Vec2d::Zero()};
+    hit.own = {1, kOwnId, own_kg, 0.5, {0.2, -0.1}, own_velocity_mps, Vec2d::Zero()};
     hit.normal = -Vec2d(std::cos(0.62), std::sin(0.62));
     hit.other = {
         2, 0, other_kg, 0.5, hit.own.position_m - hit.normal, other_velocity_mps, Vec2d::Zero()};

@@ -17,6 +17,7 @@ client::View fallen_view();
 
 // An oblique elastic hit, as the simulation would report it.
 replication::CollisionReport oblique_hit(double own_kg, double other_kg,
-                                         const physics::Vec2d& other_velocity_mps);
+                                         const physics::Vec2d& other_velocity_mps,
+                                         const physics::Vec2d& own_velocity_mps = {4.6, 1.9});
 
 }  // namespace fts::sdl

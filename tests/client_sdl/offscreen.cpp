@@ -9,10 +9,7 @@
 #include "client/sdl/window.h"
 
 namespace fts::sdl {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 Offscreen::Offscreen(int width_px, int height_px, float pixel_ratio)
     : width_(width_px), height_(height_px), ratio_(pixel_ratio) {
@@ -25,10 +22,8 @@ Offscreen::Offscreen(int width_px, int height_px, float pixel_ratio)
     for (int key = 0; key < ImGuiKey_COUNT; ++key) io.KeyMap[key] = key + 1;
     type_ = build_type_scale(unit_for(io.DisplaySize), pixel_ratio);
     rasteriser_.upload_fonts();
-    const auto drawn = [&](int length) {
-        return static_cast<std::size_t>(static_cast<float>(length) * pixel_ratio);
-    };
-    pixels_.resize(drawn(width_px) * drawn(height_px));
+    pixels_.resize(static_cast<std::size_t>(drawn(width_px)) *
+                   static_cast<std::size_t>(drawn(height_px)));
 }
 
 Offscreen::~Offscreen() {
@@ -56,17 +51,22 @@ void Offscreen::frame(double time_s, const std::function<void(Canvas&)>& draw) {
     ImGui::Render();
     for (const int key : keys_) io.KeysDown[io.KeyMap[key]] = false;
     keys_.clear();
-    const int drawn_width = static_cast<int>(static_cast<float>(width_) * ratio_);
-    const int drawn_height = static_cast<int>(static_cast<float>(height_) * ratio_);
-    const PixelView target{pixels_.data(), drawn_width, drawn_height, drawn_width};
+    stale_ = true;
+}
+
+void Offscreen::rasterise() const {
+    if (!stale_) return;
+    stale_ = false;
+    const PixelView target{pixels_.data(), drawn(width_), drawn(height_), drawn(width_)};
     rasteriser_.clear(target, palette::kBackground);
     rasteriser_.render(*ImGui::GetDrawData(), target);
 }
 
 Colour Offscreen::pixel(ImVec2 at) const {
+    rasterise();
     const auto x = static_cast<std::size_t>(at.x * ratio_);
     const auto y = static_cast<std::size_t>(at.y * ratio_);
-    const auto row = static_cast<std::size_t>(static_cast<float>(width_) * ratio_);
+    const auto row = static_cast<std::size_t>(drawn(width_));
     return rgb(pixels_.at(y * row + x) & 0xffffffU);
 }
 
@@ -94,6 +94,7 @@ int Offscreen::glyphs() const {
 }
 
 double Offscreen::drawn_share() const {
+    rasterise();
     const std::uint32_t background = 0xff0a1020U;
     const auto drawn =
         std::ranges::count_if(pixels_, [&](std::uint32_t pixel) { return pixel != background; });
@@ -107,11 +108,9 @@ std::size_t Offscreen::triangles() const {
 void Offscreen::keep(const std::string& name) const {
     const char* folder = std::getenv("FTS_FRAMES");
     if (folder == nullptr) return;
-    const int drawn_width = static_cast<int>(static_cast<float>(width_) * ratio_);
-    const int drawn_height = static_cast<int>(static_cast<float>(height_) * ratio_);
-    std::vector<std::uint32_t> copy = pixels_;
+    rasterise();
     std::string error;
-    EXPECT_TRUE(write_png({copy.data(), drawn_width, drawn_height, drawn_width},
+    EXPECT_TRUE(write_png({pixels_.data(), drawn(width_), drawn(height_), drawn(width_)},
                           std::string(folder) + "/" + name + "-" + std::to_string(height_) + ".png",
                           error))
         << error;

@@ -38,12 +38,18 @@ class Offscreen {
 
   private:
     int count_glyphs(bool outside_only) const;
+    // Into pixels_, when somebody wants to see them.
+    void rasterise() const;
+    int drawn(int length_px) const {
+        return static_cast<int>(static_cast<float>(length_px) * ratio_);
+    }
 
     int width_, height_;
     float ratio_;
     TypeScale type_;
     Rasteriser rasteriser_;
-    std::vector<std::uint32_t> pixels_;
+    mutable std::vector<std::uint32_t> pixels_;
+    mutable bool stale_ = true;
     std::vector<int> keys_;
     int click_step_ = 0;
 };

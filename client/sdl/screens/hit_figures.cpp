@@ -68,18 +68,53 @@ void draw_path(const Canvas& canvas, const Frame& frame, const Hit::Side& side, 
     }
 }
 
-void draw_velocities(const Canvas& canvas, const Frame& frame, const Hit::Side& side, Colour colour,
-                     double span_s) {
-    const Vec2d from_m = side.position_m - side.velocity_before_mps * span_s;
+// Beyond `tip`, on the way from `tail`, but inside the box.
+void label_beyond(const Canvas& canvas, const Box& box, ImVec2 tail, ImVec2 tip, float gap,
+                  Colour colour, const std::string& text) {
+    const float dx = tip.x - tail.x, dy = tip.y - tail.y;
+    const float length = std::max(std::hypot(dx, dy), 1.0F);
+    const float half = canvas.text_width(TextStyle::kCaption, text) / 2;
+    ImVec2 at{tip.x + dx / length * (gap + half * std::abs(dx) / length),
+              tip.y + dy / length * gap};
+    at.x = std::clamp(at.x, box.min.x + half, std::max(box.max.x - half, box.min.x + half));
+    at.y = std::clamp(at.y, box.min.y + canvas.px(7), box.max.y - canvas.px(7));
+    label(canvas, at, colour, text);
+}
+
+void draw_velocities(const Canvas& canvas, const Frame& frame, const Box& box,
+                     const Hit::Side& side, Colour colour, double span_s) {
+    const double before_mps = side.velocity_before_mps.norm();
+    const double after_mps = side.velocity_after_mps.norm();
     const ImVec2 contact = frame.at(side.position_m);
-    const Vec2d half_way_m = from_m + side.velocity_before_mps * (span_s * 0.62);
-    if (side.velocity_before_mps.norm() * span_s > side.radius_m * 0.25) {
-        canvas.arrow(frame.at(from_m), frame.at(half_way_m), fade(palette::kText, 0.5),
-                     canvas.px(2));
+    const Vec2d from_m = side.position_m - side.velocity_before_mps * span_s;
+    if (before_mps * span_s > side.radius_m * 0.25) {
+        const Vec2d half_way_m = from_m + side.velocity_before_mps * (span_s * 0.62);
+        const ImVec2 tail = frame.at(from_m);
+        canvas.arrow(tail, frame.at(half_way_m), fade(palette::kText, 0.5), canvas.px(2));
+        label_beyond(canvas, box, contact, tail, frame.px(side.radius_m) + canvas.px(12),
+                     palette::kTextQuiet, fixed(before_mps, 2) + " m/s");
     }
     const ImVec2 tip = frame.at(side.position_m + side.velocity_after_mps * span_s);
-    canvas.arrow(contact, tip, palette::kInk, canvas.px(5.5F));
-    canvas.arrow(contact, tip, mix(colour, palette::kText, 0.55), canvas.px(3));
+    canvas.arrow(contact, tip, palette::kText, canvas.px(3));
+    if (after_mps * span_s > side.radius_m * 0.25) {
+        label_beyond(canvas, box, contact, tip, canvas.px(12), mix(colour, palette::kText, 0.5),
+                     fixed(after_mps, 2) + " m/s");
+    }
+}
+
+// Beside the ball, across the line of centres, on the side that it does not leave by.
+void draw_mass(const Canvas& canvas, const Frame& frame, const Hit::Side& side,
+               const Vec2d& along) {
+    Vec2d across(-along.y(), along.x());
+    const Vec2d travel = side.velocity_after_mps - side.velocity_before_mps * 0.5;
+    if (across.dot(travel) > 0.0) across = -across;
+    const ImVec2 centre = frame.at(side.position_m);
+    const std::string text = mass_text(side.mass_kg);
+    const float half = canvas.text_width(TextStyle::kCaption, text) / 2;
+    const auto x = static_cast<float>(across.x()), y = static_cast<float>(across.y());
+    const float gap = frame.px(side.radius_m) + canvas.px(9);
+    label(canvas, {centre.x + x * (gap + half * std::abs(x)), centre.y - y * (gap + canvas.px(5))},
+          palette::kText, text);
 }
 
 // One ball of figure 2 with its velocity split along and across the line of centres.
@@ -87,65 +122,57 @@ struct SplitSide {
     ImVec2 centre;
     float radius;
     Colour colour;
+    double mass_kg;
     double along_mps, across_mps;
     double px_per_mps;
 };
 
-void draw_split_side(const Canvas& canvas, const SplitSide& side, double mass_kg, double opacity) {
-    draw_rubber_ball(canvas, side.centre, side.radius,
-                     {mix(side.colour, palette::kPanel, 1.0 - opacity), mass_kg, false, 1.0});
-    const auto along = static_cast<float>(side.along_mps * side.px_per_mps);
+void draw_split_side(const Canvas& canvas, const SplitSide& side, float arrow_y, float sign) {
+    draw_rubber_ball(canvas, side.centre, side.radius, {side.colour, side.mass_kg, false, 1.0});
     const auto across = static_cast<float>(side.across_mps * side.px_per_mps);
-    if (std::abs(across) > canvas.px(4)) {
+    if (std::abs(across) > canvas.px(3)) {
         canvas.arrow(side.centre, {side.centre.x, side.centre.y - across},
-                     fade(palette::kTextQuiet, 0.75), canvas.px(2));
+                     fade(palette::kInk, 0.75), canvas.px(2));
     }
-    if (std::abs(along) > canvas.px(2)) {
-        const ImVec2 tip{side.centre.x + along, side.centre.y};
-        canvas.arrow(side.centre, tip, palette::kInk, canvas.px(5.5F));
-        canvas.arrow(side.centre, tip, palette::kText, canvas.px(3));
-    } else {
-        canvas.list->AddCircleFilled(side.centre, canvas.px(3), palette::kText);
-    }
+    const auto along = static_cast<float>(side.along_mps * side.px_per_mps);
+    const ImVec2 start{side.centre.x, arrow_y};
+    canvas.arrow(start, {start.x + along, start.y}, mix(side.colour, palette::kText, 0.5),
+                 canvas.px(3));
+    canvas.dashed_line({start.x, arrow_y}, {start.x, side.centre.y - side.radius},
+                       fade(palette::kTextFaint, 0.6), canvas.px(1), canvas.px(2));
+    label(canvas, {side.centre.x + sign * side.radius * 0.2F, arrow_y - canvas.px(15)},
+          mix(side.colour, palette::kText, 0.5), signed_fixed(side.along_mps, 2),
+          sign < 0 ? Align::kRight : Align::kLeft);
 }
 
 void draw_moment(const Canvas& canvas, const Box& box, const Hit& hit, const HitColours& colours,
                  bool after) {
     const Vec2d along = -hit.normal;            // from own to other: to the right
     const Vec2d across(-along.y(), along.x());  // up
-    const double room = static_cast<double>(box.width());
     const double biggest_m = std::max(hit.own.radius_m, hit.other.radius_m);
-    const double px_per_m =
-        std::min(room * 0.085 / biggest_m, static_cast<double>(box.height()) * 0.16 / biggest_m);
-    const double px_per_mps = room * 0.24 / fastest_mps(hit);
-    const ImVec2 middle{box.centre().x, box.centre().y + canvas.px(4)};
+    const double px_per_m = std::min(static_cast<double>(box.width()) * 0.15 / biggest_m,
+                                     static_cast<double>(box.height()) * 0.22 / biggest_m);
+    const double px_per_mps = static_cast<double>(box.width()) * 0.30 / fastest_mps(hit);
+    const auto largest = static_cast<float>(biggest_m * px_per_m);
+    const ImVec2 middle{box.centre().x, box.max.y - largest - canvas.px(10)};
     canvas.dashed_line({box.min.x + canvas.px(6), middle.y}, {box.max.x - canvas.px(6), middle.y},
-                       fade(palette::kAccent, 0.5), canvas.px(1), canvas.px(4));
-
+                       fade(palette::kAccent, 0.6), canvas.px(1.2F), canvas.px(4));
     const auto side_of = [&](const Hit::Side& side, Colour colour, float direction) {
         const Vec2d& velocity = after ? side.velocity_after_mps : side.velocity_before_mps;
         const auto radius = static_cast<float>(side.radius_m * px_per_m);
         return SplitSide{{middle.x + direction * radius, middle.y},
                          radius,
                          colour,
+                         side.mass_kg,
                          velocity.dot(along),
                          velocity.dot(across),
                          px_per_mps};
     };
-    const SplitSide own = side_of(hit.own, colours.own, -1.0F);
-    const SplitSide other = side_of(hit.other, colours.other, 1.0F);
-    draw_split_side(canvas, own, hit.own.mass_kg, after ? 1.0 : 0.55);
-    draw_split_side(canvas, other, hit.other.mass_kg, after ? 1.0 : 0.55);
-
-    label(canvas, {box.centre().x, box.min.y + canvas.px(10)}, palette::kTextQuiet,
-          after ? "after" : "before");
-    const float foot = box.max.y - canvas.px(10);
-    const auto value = [&](const SplitSide& side, Align align, float x) {
-        label(canvas, {x, foot}, mix(side.colour, palette::kText, 0.4),
-              signed_fixed(side.along_mps, 2) + " m/s", align);
-    };
-    value(own, Align::kRight, box.centre().x - canvas.px(8));
-    value(other, Align::kLeft, box.centre().x + canvas.px(8));
+    const float arrow_y = middle.y - largest - canvas.px(12);
+    draw_split_side(canvas, side_of(hit.own, colours.own, -1.0F), arrow_y, -1.0F);
+    draw_split_side(canvas, side_of(hit.other, colours.other, 1.0F), arrow_y, 1.0F);
+    label(canvas, {box.centre().x, box.min.y + canvas.px(6)}, palette::kTextQuiet,
+          after ? "after, m/s" : "before, m/s");
 }
 
 }  // namespace
@@ -153,7 +180,7 @@ void draw_moment(const Canvas& canvas, const Box& box, const Hit& hit, const Hit
 void draw_figure_in_plane(const Canvas& canvas, const Box& box, const Hit& hit,
                           const HitColours& colours) {
     const double touching_m = hit.own.radius_m + hit.other.radius_m;
-    const double span_s = 2.1 * touching_m / fastest_mps(hit);
+    const double span_s = 1.7 * touching_m / fastest_mps(hit);
     const auto reach = [&](const Hit::Side& side, const Vec2d& velocity, double way) {
         return Vec2d(side.position_m + velocity * (way * span_s));
     };
@@ -164,7 +191,10 @@ void draw_figure_in_plane(const Canvas& canvas, const Box& box, const Hit& hit,
                                          reach(hit.own, hit.own.velocity_after_mps, 1),
                                          reach(hit.other, hit.other.velocity_after_mps, 1)};
     const double margin_m = std::max(hit.own.radius_m, hit.other.radius_m) * 1.15;
-    const Frame frame = fitted(box, points, margin_m);
+    // Room for the words beside the outermost balls.
+    const float words = canvas.px(44);
+    const Frame frame =
+        fitted({{box.min.x + words, box.min.y}, {box.max.x - words, box.max.y}}, points, margin_m);
 
     draw_path(canvas, frame, hit.own, colours.own, span_s);
     draw_path(canvas, frame, hit.other, colours.other, span_s);
@@ -174,12 +204,14 @@ void draw_figure_in_plane(const Canvas& canvas, const Box& box, const Hit& hit,
                          {colour, side->mass_kg, false, 1.0});
     }
     const Vec2d along = -hit.normal;
-    const Vec2d near_m = hit.own.position_m - along * (hit.own.radius_m + 0.75 * touching_m);
-    const Vec2d far_m = hit.other.position_m + along * (hit.other.radius_m + 0.75 * touching_m);
+    const Vec2d near_m = hit.own.position_m - along * (hit.own.radius_m + 0.45 * touching_m);
+    const Vec2d far_m = hit.other.position_m + along * (hit.other.radius_m + 0.45 * touching_m);
     canvas.dashed_line(frame.at(near_m), frame.at(far_m), fade(palette::kAccent, 0.8),
                        canvas.px(1.3F), canvas.px(5));
-    draw_velocities(canvas, frame, hit.own, colours.own, span_s);
-    draw_velocities(canvas, frame, hit.other, colours.other, span_s);
+    draw_mass(canvas, frame, hit.own, along);
+    draw_mass(canvas, frame, hit.other, along);
+    draw_velocities(canvas, frame, box, hit.own, colours.own, span_s);
+    draw_velocities(canvas, frame, box, hit.other, colours.other, span_s);
 }
 
 void draw_figure_turned(const Canvas& canvas, const Box& box, const Hit& hit,

@@ -69,9 +69,9 @@ std::vector<Row> rows_of(const Hit& hit, const HitSums& sums) {
         {"Mass", "kg", fixed(hit.own.mass_kg, 3), fixed(hit.other.mass_kg, 3),
          fixed(hit.own.mass_kg + hit.other.mass_kg, 3), "", false},
         {"Speed", "m/s", speed(hit.own), speed(hit.other), "", "", false},
-        {"along the line", "m/s", component(hit.own, along), component(hit.other, along), "", "",
+        {"   along the line", "m/s", component(hit.own, along), component(hit.other, along), "", "",
          false},
-        {"across it", "m/s", component(hit.own, across), component(hit.other, across), "", "",
+        {"   across it", "m/s", component(hit.own, across), component(hit.other, across), "", "",
          false},
         momentum_row("Momentum x", 0),
         momentum_row("Momentum y", 1),
@@ -113,10 +113,10 @@ float draw_table(const Canvas& canvas, const Box& box, const std::vector<Row>& r
                     std::max(1.0F, canvas.px(1)));
         if (row.conserved) {
             canvas.list->AddRectFilled({box.min.x - canvas.px(8), line},
-                                       {box.max.x + canvas.px(8), line + canvas.px(28)},
+                                       {box.max.x + canvas.px(8), line + canvas.px(29)},
                                        fade(palette::kGood, 0.07));
         }
-        const float middle = y + canvas.px(11);
+        const float middle = y + canvas.px(11.5F);
         const auto cell = [&](float x, Colour colour, const std::string& text, Align align) {
             canvas.text_middle({x, middle}, TextStyle::kCaption, colour, text, align,
                                canvas.px(14));
@@ -127,7 +127,7 @@ float draw_table(const Canvas& canvas, const Box& box, const std::vector<Row>& r
         cell(at.other, palette::kText, row.other, Align::kRight);
         cell(at.together, palette::kText, row.together, Align::kRight);
         cell(at.change, palette::kGood, row.change, Align::kRight);
-        y += canvas.px(28);
+        y += canvas.px(29);
     }
     return y;
 }
@@ -139,25 +139,55 @@ std::string every_digit(double value) {
     return buffer.data();
 }
 
+// Who holds the energy: two bars of one length, because the sum is the same.
+float draw_energy_bars(const Canvas& canvas, ImVec2 at, const Box& box, const Hit& hit,
+                       const HitColours& colours) {
+    const float left = at.x + canvas.px(112), width = box.max.x - left;
+    const auto bar = [&](float y, const char* when, const Vec2d& own_mps, const Vec2d& other_mps) {
+        const double own_j = 0.5 * hit.own.mass_kg * own_mps.squaredNorm();
+        const double other_j = 0.5 * hit.other.mass_kg * other_mps.squaredNorm();
+        const double share = own_j + other_j > 0.0 ? own_j / (own_j + other_j) : 0.5;
+        const float split = left + width * static_cast<float>(share), height = canvas.px(16);
+        canvas.text_middle({at.x, y + height / 2}, TextStyle::kCaption, palette::kTextQuiet, when,
+                           Align::kLeft);
+        canvas.list->AddRectFilled({left, y}, {split, y + height}, colours.own);
+        canvas.list->AddRectFilled({split, y}, {left + width, y + height}, colours.other);
+        const auto words = [&](double part, float x, Align align) {
+            if (part < 0.12) return;
+            canvas.text_middle({x, y + height / 2}, TextStyle::kCaption, palette::kInk,
+                               fixed(100.0 * part, 0) + " %", align, canvas.px(12));
+        };
+        words(share, left + canvas.px(8), Align::kLeft);
+        words(1.0 - share, left + width - canvas.px(8), Align::kRight);
+    };
+    bar(at.y, "Energy before", hit.own.velocity_before_mps, hit.other.velocity_before_mps);
+    bar(at.y + canvas.px(22), "Energy after", hit.own.velocity_after_mps,
+        hit.other.velocity_after_mps);
+    return at.y + canvas.px(38);
+}
+
 void draw_last_bit(const Canvas& canvas, ImVec2 at, const Box& box, const HitSums& sums) {
-    const float before = at.x + canvas.px(150), after = at.x + canvas.px(330);
-    canvas.text({before, at.y}, TextStyle::kCaption, palette::kTextFaint, "before");
-    canvas.text({after, at.y}, TextStyle::kCaption, palette::kTextFaint, "after");
-    const auto line = [&](float drop, const char* name, double a, double b) {
+    const float before = at.x + canvas.px(112), after = at.x + canvas.px(300);
+    const auto line = [&](float drop, Colour colour, const std::string& name, const std::string& a,
+                          const std::string& b) {
         const float y = at.y + canvas.px(drop);
         canvas.text({at.x, y}, TextStyle::kCaption, palette::kTextQuiet, name);
-        canvas.text({before, y}, TextStyle::kCaption, palette::kText, every_digit(a));
-        canvas.text({after, y}, TextStyle::kCaption, palette::kText, every_digit(b));
+        canvas.text({before, y}, TextStyle::kCaption, colour, a);
+        canvas.text({after, y}, TextStyle::kCaption, colour, b);
     };
-    line(20, "Kinetic energy, J", sums.energy_before_j, sums.energy_after_j);
-    line(39, "Momentum x, N\xc2\xb7s", sums.momentum_before_ns.x(), sums.momentum_after_ns.x());
-    line(58, "Momentum y, N\xc2\xb7s", sums.momentum_before_ns.y(), sums.momentum_after_ns.y());
+    const auto digits = [&](float drop, const char* name, double a, double b) {
+        line(drop, palette::kText, name, every_digit(a), every_digit(b));
+    };
+    line(0, palette::kTextFaint, "Every digit", "before", "after");
+    digits(20, "Energy, J", sums.energy_before_j, sums.energy_after_j);
+    digits(39, "Mom. x, N\xc2\xb7s", sums.momentum_before_ns.x(), sums.momentum_after_ns.x());
+    digits(58, "Mom. y, N\xc2\xb7s", sums.momentum_before_ns.y(), sums.momentum_after_ns.y());
     const bool kept = std::abs(sums.relative_energy_change) <= kRoundOff &&
                       sums.relative_momentum_change <= kRoundOff;
-    canvas.paragraph({at.x, at.y + canvas.px(86)}, box.max.x - at.x, TextStyle::kCaption,
+    canvas.paragraph({at.x, at.y + canvas.px(84)}, box.max.x - at.x, TextStyle::kCaption,
                      kept ? palette::kGood : palette::kBad,
-                     kept ? "Conserved: what differs, if anything, is the rounding of the last "
-                            "bit of a double (2.2 \xc3\x97 10\xe2\x81\xbb\xc2\xb9\xe2\x81\xb6)."
+                     kept ? "Conserved. What differs, if anything, is the rounding of a double's "
+                            "last bit (2.2 \xc3\x97 10\xe2\x81\xbb\xc2\xb9\xe2\x81\xb6)."
                           : "Not conserved within rounding: this hit was not perfectly elastic.");
 }
 
@@ -216,7 +246,7 @@ void draw_nothing_yet(const Canvas& canvas, const Box& panel) {
 bool draw_inspector(Canvas& canvas, const client::View& view) {
     const Layer layer("inspector", canvas);
     const Box whole = canvas.whole();
-    canvas.list->AddRectFilled(whole.min, whole.max, fade(palette::kVeil, 0.6));
+    canvas.list->AddRectFilled(whole.min, whole.max, fade(palette::kVeil, 0.8));
     const Box panel = canvas.centred(kWidth, kHeight);
     canvas.panel(panel);
     const float inset = canvas.px(kInset);
@@ -248,10 +278,11 @@ bool draw_inspector(Canvas& canvas, const client::View& view) {
     const Box right{{split + canvas.px(30), body}, {panel.max.x - inset, bottom}};
     float y = right.min.y;
     y += canvas.paragraph({right.min.x, y}, right.width(), TextStyle::kStrong, palette::kText,
-                          explain(view, hit));
-    y = draw_table(canvas, {{right.min.x, y + canvas.px(18)}, right.max}, rows_of(hit, sums), other,
+                          explain(hit));
+    y = draw_table(canvas, {{right.min.x, y + canvas.px(14)}, right.max}, rows_of(hit, sums), other,
                    colours);
-    draw_last_bit(canvas, {right.min.x, y + canvas.px(22)}, right, sums);
+    y = draw_energy_bars(canvas, {right.min.x, y + canvas.px(24)}, right, hit, colours);
+    draw_last_bit(canvas, {right.min.x, y + canvas.px(26)}, right, sums);
     return closed;
 }
 

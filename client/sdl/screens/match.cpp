@@ -175,8 +175,11 @@ MatchChoice draw_match(Canvas& canvas, const client::View& view, MatchState& sta
     {
         const Layer layer("match", canvas, true);
         draw_arena(canvas, view, state);
-        draw_hud(canvas, view, state.hud);
-        if (!state.inspecting) draw_announcement(canvas, view);
+        const bool covered = state.inspecting || view.phase == game::Phase::kShop;
+        if (!covered) {
+            draw_hud(canvas, view, state.hud);
+            draw_announcement(canvas, state.camera, view);
+        }
     }
     state.drawn_s = canvas.time_s;
     if (view.phase == game::Phase::kShop && !state.inspecting) {

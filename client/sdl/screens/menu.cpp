@@ -46,7 +46,7 @@ void draw_mover(const Canvas& canvas, const Camera& camera, const Mover& mover, 
                 double opacity) {
     const ImVec2 contact = camera.to_screen(mover.contact_m);
     const double seen_s = std::min(time_s, 0.0);
-    const ImVec2 origin = camera.to_screen(mover.at(-kLoopS / 2));
+    const ImVec2 origin = camera.to_screen(mover.at(-kLoopS * 0.42));
     const ImVec2 come = camera.to_screen(mover.at(seen_s));
     canvas.dashed_line(origin, come, fade(mover.colour, 0.40 * opacity), canvas.px(1.5F),
                        canvas.px(7));
@@ -71,7 +71,7 @@ void draw_scene(const Canvas& canvas) {
     draw_platform(canvas, camera, disc);
     const Pair pair = collision();
     const double time_s = std::fmod(canvas.time_s, kLoopS) - kLoopS / 2;
-    const double edge_s = kLoopS / 2 - std::abs(time_s);
+    const double edge_s = kLoopS * 0.45 - std::abs(time_s);
     const double opacity = std::clamp(edge_s / 0.6, 0.0, 1.0);
     if (time_s > 0.0 && time_s < 0.5) {
         const ImVec2 point = camera.to_screen(physics::Vec2d::Zero());

@@ -123,18 +123,20 @@ void draw_price(const Canvas& canvas, const Box& card, const client::View& view,
 void draw_effect(const Canvas& canvas, const Box& card, const Effect& effect, bool last_tier) {
     const float left = card.min.x + canvas.px(20);
     float x = left;
-    const float y = card.min.y + canvas.px(70);
-    const auto word = [&](TextStyle style, Colour colour, const std::string& text, float drop) {
-        canvas.text({x, y + canvas.px(drop)}, style, colour, text);
-        x += canvas.text_width(style, text) + canvas.px(8);
+    const float y = card.min.y + canvas.px(82);
+    const auto word = [&](TextStyle style, Colour colour, const std::string& text, float units) {
+        const float size = canvas.px(units);
+        const float drop = (canvas.px(28) - size) * 0.4F;
+        canvas.text_middle({x, y + drop}, style, colour, text, Align::kLeft, size);
+        x += canvas.text_width(style, text) * size / canvas.type.size_px(style) + canvas.px(8);
     };
     word(TextStyle::kHeading, last_tier ? palette::kText : palette::kTextQuiet,
-         fixed(effect.now, effect.decimals), 0);
+         fixed(effect.now, effect.decimals), 28);
     if (!last_tier) {
-        word(TextStyle::kHeading, palette::kTextFaint, "\xe2\x86\x92", 0);
-        word(TextStyle::kHeading, palette::kText, fixed(effect.next, effect.decimals), 0);
+        word(TextStyle::kHeading, palette::kTextFaint, "\xe2\x86\x92", 22);
+        word(TextStyle::kHeading, palette::kText, fixed(effect.next, effect.decimals), 28);
     }
-    word(TextStyle::kBody, palette::kTextFaint, effect.unit, 5);
+    word(TextStyle::kBody, palette::kTextFaint, effect.unit, 16);
 }
 
 bool draw_card(const Canvas& canvas, const Box& card, const client::View& view, int slot) {
@@ -153,7 +155,7 @@ bool draw_card(const Canvas& canvas, const Box& card, const client::View& view, 
                        TextStyle::kHeading, palette::kText, effect.title, Align::kLeft);
     draw_price(canvas, card, view, stat);
     draw_effect(canvas, card, effect, tier >= game::kMaxTier);
-    canvas.paragraph({left, card.min.y + canvas.px(106)}, card.width() - canvas.px(40),
+    canvas.paragraph({left, card.min.y + canvas.px(112)}, card.width() - canvas.px(40),
                      TextStyle::kCaption, palette::kTextQuiet, effect.remark);
     const float foot = card.max.y - canvas.px(24);
     draw_pips(canvas, {left, foot - canvas.px(3)}, tier);
@@ -282,7 +284,7 @@ ShopChoice draw_shop(Canvas& canvas, const client::View& view, ShopState& state,
     const Layer layer("shop", canvas);
     if (state.open_since_s < 0.0) state = {"", true, canvas.time_s};
     const Box whole = canvas.whole();
-    canvas.list->AddRectFilled(whole.min, whole.max, fade(palette::kVeil, 0.72));
+    canvas.list->AddRectFilled(whole.min, whole.max, fade(palette::kVeil, 0.8));
     const Box panel = canvas.centred(kPanelWidth, kPanelHeight);
     canvas.panel(panel);
     draw_head(canvas, panel, view);
