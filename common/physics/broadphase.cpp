@@ -44,10 +44,12 @@ template <typename Scalar>
 void Broadphase<Scalar>::begin(std::span<const Box<Scalar>> boxes, std::uint32_t slots) {
     Scalar low[2] = {}, high[2] = {};
     Scalar cell = Scalar(0);
+    constexpr Scalar Box<Scalar>::*kMin[2] = {&Box<Scalar>::min_x_m, &Box<Scalar>::min_y_m};
+    constexpr Scalar Box<Scalar>::*kMax[2] = {&Box<Scalar>::max_x_m, &Box<Scalar>::max_y_m};
     for (int axis = 0; axis < 2 && !boxes.empty(); ++axis) {
         scratch_.clear();
         for (const auto& box : boxes) {
-            scratch_.push_back(Scalar(0.5) * (box.min_m[axis] + box.max_m[axis]));
+            scratch_.push_back(Scalar(0.5) * (box.*kMin[axis] + box.*kMax[axis]));
         }
         low[axis] = quantile(scratch_, kLowQuantile);
         high[axis] = quantile(scratch_, kHighQuantile);
@@ -55,7 +57,7 @@ void Broadphase<Scalar>::begin(std::span<const Box<Scalar>> boxes, std::uint32_t
         low[axis] -= margin;
         high[axis] += margin;
         scratch_.clear();
-        for (const auto& box : boxes) scratch_.push_back(box.max_m[axis] - box.min_m[axis]);
+        for (const auto& box : boxes) scratch_.push_back(box.*kMax[axis] - box.*kMin[axis]);
         cell = std::max(cell, Scalar(2) * quantile(scratch_, 0.5));
     }
     const Scalar area = (high[0] - low[0]) * (high[1] - low[1]);
@@ -75,8 +77,8 @@ void Broadphase<Scalar>::begin(std::span<const Box<Scalar>> boxes, std::uint32_t
 
 template <typename Scalar>
 auto Broadphase<Scalar>::cells_of(const Box<Scalar>& box) const -> Cells {
-    return {axis_[0].cell_of(box.min_m.x()), axis_[1].cell_of(box.min_m.y()),
-            axis_[0].cell_of(box.max_m.x()), axis_[1].cell_of(box.max_m.y())};
+    return {axis_[0].cell_of(box.min_x_m), axis_[1].cell_of(box.min_y_m),
+            axis_[0].cell_of(box.max_x_m), axis_[1].cell_of(box.max_y_m)};
 }
 
 template <typename Scalar>

@@ -12,18 +12,16 @@
 #include <span>
 #include <vector>
 
-#include "common/physics/scene.h"
-
 namespace fts::physics {
 
 template <typename Scalar>
 struct Box {
-    Vec2<Scalar> min_m = Vec2<Scalar>::Zero();
-    Vec2<Scalar> max_m = Vec2<Scalar>::Zero();
+    Scalar min_x_m = Scalar(0), min_y_m = Scalar(0);
+    Scalar max_x_m = Scalar(0), max_y_m = Scalar(0);
 
     bool overlaps(const Box& other) const {
-        return min_m.x() <= other.max_m.x() && other.min_m.x() <= max_m.x() &&
-               min_m.y() <= other.max_m.y() && other.min_m.y() <= max_m.y();
+        return min_x_m <= other.max_x_m && other.min_x_m <= max_x_m && min_y_m <= other.max_y_m &&
+               other.min_y_m <= max_y_m;
     }
 };
 

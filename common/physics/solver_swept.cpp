@@ -292,7 +292,10 @@ void SweptSolver<Scalar>::advance_everybody(Scalar time_s) {
 
 template <typename Scalar>
 Vec2<Scalar> SweptSolver<Scalar>::position_at(std::uint32_t body, Scalar time_s) const {
-    return bodies_->position_m[body] + bodies_->velocity_mps[body] * (time_s - time_s_[body]);
+    const Vec& position = bodies_->position_m[body];
+    const Vec& velocity = bodies_->velocity_mps[body];
+    const Scalar since_s = time_s - time_s_[body];
+    return {position.x() + velocity.x() * since_s, position.y() + velocity.y() * since_s};
 }
 
 template <typename Scalar>
@@ -306,11 +309,12 @@ Box<Scalar> SweptSolver<Scalar>::swept_box(std::uint32_t body) const {
     const Vec from = position_at(body, now_s_);
     const Vec to = position_at(body, span_s_);
     const Scalar radius = bodies_->radius_m[body];
-    const Scalar extent = from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff() + radius;
+    const Scalar extent = std::max(std::abs(from.x()), std::abs(from.y())) +
+                          std::max(std::abs(to.x()), std::abs(to.y())) + radius;
     const Scalar reach =
         radius + static_cast<Scalar>(kBoxSlack) * std::numeric_limits<Scalar>::epsilon() * extent;
-    const Vec margin = Vec::Constant(reach);
-    return {from.cwiseMin(to) - margin, from.cwiseMax(to) + margin};
+    return {std::min(from.x(), to.x()) - reach, std::min(from.y(), to.y()) - reach,
+            std::max(from.x(), to.x()) + reach, std::max(from.y(), to.y()) + reach};
 }
 
 template <typename Scalar>

@@ -74,16 +74,16 @@ TEST(Contact, a_light_ball_between_heavy_ones_that_press_it_keeps_calm) {
     World<double> world(scene);
     world.set_control(world.ids()[0], {Vec2d(5, 0), 1.0});
     world.set_control(world.ids()[2], {Vec2d(-5, 0), 1.0});
-    run(world, 1000);
+    run(world, 300);
 }
 
 TEST(Contact, a_crowd_thrusting_into_a_corner_jams_without_overrun) {
     for (const std::uint64_t seed : {41U, 42U}) {
         SCOPED_TRACE(seed);
         Dice dice(seed);
-        World<double> world(random_gas({.balls = 60, .max_speed_mps = 0.0}, dice));
+        World<double> world(random_gas({.balls = 40, .max_speed_mps = 0.0}, dice));
         for (const BodyId id : world.ids()) world.set_control(id, {Vec2d(20, 12), 2.0});
-        EXPECT_GT(run(world, 900).events, 1000U);
+        EXPECT_GT(run(world, 200).events, 500U);
     }
 }
 
@@ -92,7 +92,7 @@ TEST(Contact, a_crowd_rushing_to_one_point_jams_without_overrun) {
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
     World<double> world(random_gas({.balls = 60, .walled = false}, dice));
-    for (int second = 0; second < 10; ++second) {
+    for (int second = 0; second < 4; ++second) {
         for (int tick = 0; tick < 60; ++tick) {
             for (const BodyId id : world.ids()) {
                 const Vec2d inwards = -world.body(id).position_m.normalized();
@@ -150,14 +150,14 @@ TEST(Contact, balls_that_lose_energy_collapse_without_overrun) {
         SCOPED_TRACE(restitution);
         constexpr std::uint64_t kSeed = 44;
         Dice dice(kSeed);
-        Scene scene = random_gas({.balls = 40}, dice);
+        Scene scene = random_gas({.balls = 25}, dice);
         scene.restitution = restitution;
         World<double> world(scene);
         const double energy = world.kinetic_energy_j();
-        run(world, 200);
+        run(world, 60);
         EXPECT_LT(world.kinetic_energy_j(), energy);
         for (const BodyId id : world.ids()) world.set_control(id, {Vec2d(20, 12), 0.5});
-        run(world, 200);
+        run(world, 60);
     }
 }
 
@@ -208,7 +208,7 @@ TEST(Overrun, a_squeezed_ball_never_becomes_infinitely_fast) {
     Scene scene = endless();
     scene.bodies[0].velocity_mps = {1, 0};
     World<double> world(scene);
-    for (int tick = 0; tick < 200; ++tick) {
+    for (int tick = 0; tick < 20; ++tick) {
         world.step(kTick);
         ASSERT_TRUE(all_finite(world));
         ASSERT_LE(deepest_penetration_m(world), 1e-12);

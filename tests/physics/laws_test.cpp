@@ -15,10 +15,11 @@ constexpr double kTick = 1.0 / 60.0;
 constexpr std::uint64_t kTenThousand = 10'000;
 
 TEST(Laws, a_walled_box_keeps_its_energy_over_ten_thousand_collisions) {
-    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
         SCOPED_TRACE(seed);
         Dice dice(seed);
-        World<double> world(random_gas({.max_speed_mps = 40.0}, dice));
+        World<double> world(
+            random_gas({.balls = 24, .half_width_m = 6.0, .max_speed_mps = 40.0}, dice));
         const double energy = world.kinetic_energy_j();
         while (world.audit().ball_collisions < kTenThousand) {
             ASSERT_FALSE(world.step(kTick).overrun);
@@ -34,7 +35,7 @@ TEST(Laws, a_free_scene_keeps_its_energy_and_momentum_over_ten_thousand_collisio
     constexpr std::uint64_t kSeed = 4;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
-    World<double> world(gas_in_a_ring_of_balls(40, dice));
+    World<double> world(gas_in_a_ring_of_balls(30, dice));
     const double energy = world.kinetic_energy_j();
     const Vec2d momentum = world.momentum_ns();
     double speeds = 0.0;
@@ -52,8 +53,9 @@ TEST(Laws, nothing_ever_overlaps) {
     constexpr std::uint64_t kSeed = 5;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
-    World<double> world(random_gas({.balls = 60, .max_speed_mps = 60.0}, dice));
-    for (int tick = 0; tick < 300; ++tick) {
+    World<double> world(
+        random_gas({.balls = 40, .half_width_m = 8.0, .max_speed_mps = 60.0}, dice));
+    for (int tick = 0; tick < 150; ++tick) {
         world.step(kTick);
         ASSERT_LE(deepest_penetration_m(world), 1e-13);
         for (const Contact<double>& hit : world.contacts()) {
@@ -62,19 +64,19 @@ TEST(Laws, nothing_ever_overlaps) {
             ASSERT_NEAR((hit.position_a_m - hit.position_b_m).norm(), reach, 1e-13);
         }
     }
-    EXPECT_GT(world.audit().ball_collisions, 3000U);
+    EXPECT_GT(world.audit().ball_collisions, 1000U);
 }
 
 TEST(Laws, at_a_thousand_metres_contacts_are_still_good_to_round_off) {
     constexpr std::uint64_t kSeed = 6;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
-    Scene scene = random_gas({.balls = 60, .max_speed_mps = 60.0}, dice);
+    Scene scene = random_gas({.balls = 40, .half_width_m = 8.0, .max_speed_mps = 60.0}, dice);
     for (BodyDef& body : scene.bodies) body.position_m += Vec2d(1000, -1000);
     scene.walls->min_m += Vec2d(1000, -1000);
     scene.walls->max_m += Vec2d(1000, -1000);
     World<double> world(scene);
-    for (int tick = 0; tick < 300; ++tick) {
+    for (int tick = 0; tick < 150; ++tick) {
         world.step(kTick);
         ASSERT_LE(deepest_penetration_m(world), 1e-12);
     }
