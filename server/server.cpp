@@ -19,14 +19,19 @@ net::ListenerConfig listener_config(const ServerConfig& config) {
     return listener;
 }
 
+// Lets the ledger take over what the store holds, before a thread takes over the store.
+std::unique_ptr<Store> opened(Ledger& ledger, std::unique_ptr<Store> store) {
+    ledger.open(store->totals_at_open());
+    return store;
+}
+
 }  // namespace
 
 Server::Server(const ServerConfig& config, net::Transport& transport, std::unique_ptr<Store> store,
                Log log)
     : config_(config),
       log_(std::move(log)),
-      ledger_(),
-      journal_((ledger_.open(store->totals_at_open()), std::move(store)), config.journal),
+      journal_(opened(ledger_, std::move(store)), config.journal),
       listener_(listener_config(config), transport),
       transport_(transport) {
     assert(!config.levels.empty());
@@ -104,9 +109,10 @@ void Server::deliver(Arena& arena) {
 }
 
 void Server::publish_snapshot(Arena& arena) {
+    if (arena.players.empty()) return;
     replication::Snapshot snapshot = arena.match.snapshot();
     arena.match.clear_hits();
-    if (arena.players.empty() || snapshot.tick <= arena.feed.newest_tick()) return;
+    if (snapshot.tick <= arena.feed.newest_tick()) return;
     arena.feed.publish(std::move(snapshot));
     for (const auto& [player, connection] : arena.players) {
         send_snapshot(arena, sessions_.at(connection));

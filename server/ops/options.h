@@ -1,5 +1,6 @@
-// What a host may choose: by flag, by environment variable (FTS_PORT for --port, and so on) or in a
-// configuration file, in that order of precedence.
+// What a host may choose: by flag, in a configuration file, or by environment variable (FTS_PORT
+// for
+// --port, and so on). A flag goes before the file, the file before the environment.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,122 @@
+// A client of a few lines on an in-memory network: says what a test tells it to, and keeps
+// everything that it hears.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/net/connection.h"
+#include "common/replication/delta.h"
+#include "common/replication/snapshot_history.h"
+#include "common/replication/wire.h"
+#include "tests/net/memory_network.h"
+
+namespace fts::server {
+
+class FakeClient {
+  public:
+    FakeClient(net::MemoryNetwork& network, const net::Address& server, std::uint8_t host,
+               const net::KeyPair& key = net::generate_key_pair())
+        : key_(key),
+          transport_(network, net::address_of(host, 40000)),
+          dialer_({.key = key, .server = server}, transport_) {}
+
+    void update(double now_s) {
+        transport_.poll(now_s,
+                        [&](const net::Address& from, std::span<const std::uint8_t> datagram) {
+                            dialer_.receive(from, datagram, now_s);
+                        });
+        if (sends_inputs && welcome()) send_input({});
+        dialer_.update(now_s);
+        for (const net::Event& event : dialer_.drain_events()) {
+            std::visit([this](const auto& happened) { on(happened); }, event);
+        }
+    }
+
+    void say(const replication::ClientMessage& message) {
+        dialer_.send_reliable(replication::encode(message));
+    }
+    void say_nonsense() {
+        dialer_.send_reliable(std::vector<std::uint8_t>{0xff, 0xff, 0xff, 0x07});
+    }
+    void send_input(const game::InputCommand& input) {
+        send({snapshot.tick, ++input_sequence, {input}});
+    }
+    void send(const replication::InputPacket& packet) {
+        dialer_.send_unreliable(replication::encode(packet));
+    }
+    // As a message or as a payload, half and half.
+    void send_raw(const std::vector<std::uint8_t>& bytes) {
+        if (bytes.size() % 2 == 0) {
+            dialer_.send_reliable(bytes);
+        } else {
+            dialer_.send_unreliable(bytes);
+        }
+    }
+    void leave() { dialer_.close("bye"); }
+
+    // All messages of one kind, in order.
+    template <typename Message>
+    std::vector<Message> heard() const {
+        std::vector<Message> found;
+        for (const auto& message : messages) {
+            if (const auto* one = std::get_if<Message>(&message)) found.push_back(*one);
+        }
+        return found;
+    }
+    template <typename Message>
+    std::optional<Message> last() const {
+        const auto all = heard<Message>();
+        return all.empty() ? std::nullopt : std::optional<Message>(all.back());
+    }
+    std::optional<replication::Welcome> welcome() const { return last<replication::Welcome>(); }
+    bool is_connected() const { return dialer_.state() == net::Dialer::State::kConnected; }
+    const net::KeyPair& key() const { return key_; }
+
+    std::vector<replication::ServerMessage> messages;
+    std::optional<net::Disconnected> disconnected;
+    replication::Snapshot snapshot;  // the newest whole one
+    std::uint64_t snapshots = 0;
+    std::uint64_t deltas = 0;  // parts that were not keyframes
+    std::uint32_t acked_input_sequence = 0;
+    std::uint32_t input_sequence = 0;
+    bool sends_inputs = true;
+
+  private:
+    void on(const net::Connected&) {}
+    void on(const net::Disconnected& event) { disconnected = event; }
+    void on(const net::ReliableMessage& event) {
+        auto message = replication::decode_server_message(event.bytes);
+        ASSERT_TRUE(message);
+        messages.push_back(std::move(*message));
+    }
+    void on(const net::UnreliablePayload& event) {
+        const auto packet = replication::decode_snapshot_packet(event.bytes);
+        ASSERT_TRUE(packet);
+        const auto header = replication::peek_part(packet->part);
+        ASSERT_TRUE(header);
+        acked_input_sequence = packet->acked_input_sequence;
+        if (header->baseline_tick != 0) ++deltas;
+        const auto held = history_.find(header->baseline_tick);
+        ASSERT_TRUE(header->baseline_tick == 0 || held) << "a delta against what was never held";
+        if (auto whole = assembler_.add(held ? *held : replication::Snapshot{}, packet->part)) {
+            snapshot = std::move(*whole);
+            ++snapshots;
+            history_.add(std::make_shared<const replication::Snapshot>(snapshot));
+        }
+    }
+
+    net::KeyPair key_;
+    net::MemoryTransport transport_;
+    net::Dialer dialer_;
+    replication::SnapshotAssembler assembler_;
+    replication::SnapshotHistory history_;
+};
+
+}  // namespace fts::server
