@@ -54,10 +54,10 @@ class ByteReader {
         for (std::size_t i = 0; i < kMaxVarintBytes; ++i) {
             const std::uint8_t byte = u8();
             if (failed_) return fail();
-            value |= std::uint64_t{byte & 0x7Fu} << (7 * i);
+            value |= std::uint64_t{byte & 0x7FU} << (7 * i);
             if (byte >= 0x80) continue;
             const bool longer_than_needed = byte == 0 && i > 0;
-            if (longer_than_needed || value > 0xFFFFFFFFu) return fail();
+            if (longer_than_needed || value > 0xFFFFFFFFU) return fail();
             return static_cast<std::uint32_t>(value);
         }
         return fail();

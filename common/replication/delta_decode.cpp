@@ -21,13 +21,13 @@ std::int32_t sign_extended(std::uint64_t packed, unsigned bits) {
 Residuals read_pair(ByteReader& in) {
     const std::uint8_t first = in.u8();
     for (const PairWidth& width : kPairWidths) {
-        if ((first & ((1u << width.prefix_bits) - 1)) != width.prefix) continue;
+        if ((first & ((1U << width.prefix_bits) - 1)) != width.prefix) continue;
         if (width.bits == 32) {
             const auto x = static_cast<std::uint32_t>(in.little_endian(4));
             const auto y = static_cast<std::uint32_t>(in.little_endian(4));
             return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
         }
-        const std::uint64_t packed = first | in.little_endian(width.bytes - 1u) << 8;
+        const std::uint64_t packed = first | in.little_endian(width.bytes - 1U) << 8;
         return {sign_extended(packed >> width.prefix_bits, width.bits),
                 sign_extended(packed >> (width.prefix_bits + width.bits), width.bits)};
     }
@@ -134,46 +134,31 @@ class ListDecoder {
 
     void record(std::uint8_t tag) {
         if (tag == kAdded) return add();
-        if (old_ == old_end_) {
-            in_.fail();
-        } else if (tag < kPredictedRun) {
-            take(read_changes(in_, tag, *old_, ticks_));
-        } else if (tag < kRemovedRun) {
-            keep_predicted(tag - kPredictedRun + 1);
-        } else if (tag < kNudged) {
-            remove(tag - kRemovedRun + 1);
-        } else if (const auto entry = nudged(tag, *old_, ticks_)) {
-            take(*entry);
-        } else {
-            in_.fail();
-        }
+        if (old_ == old_end_) return refuse();
+        if (tag < kPredictedRun) return take(read_changes(in_, tag, *old_, ticks_));
+        if (tag < kRemovedRun) return keep_predicted(tag - kPredictedRun + 1);
+        if (tag < kNudged) return remove(tag - kRemovedRun + 1);
+        const auto entry = nudged(tag, *old_, ticks_);
+        return entry ? take(*entry) : refuse();
     }
+    void refuse() { in_.fail(); }
     void take(const Entry& entry) {
         entries_.push_back(entry);
-        next_id_ = entry.id + 1u;
+        next_id_ = entry.id + 1U;
         ++old_;
     }
     void keep_predicted(std::ptrdiff_t count) {
-        if (count > old_end_ - old_) {
-            in_.fail();
-            return;
-        }
+        if (count > old_end_ - old_) return refuse();
         for (; count > 0; --count) take(predicted(*old_, ticks_));
     }
     void remove(std::ptrdiff_t count) {
-        if (count > old_end_ - old_) {
-            in_.fail();
-            return;
-        }
+        if (count > old_end_ - old_) return refuse();
         old_ += count;
-        next_id_ = std::prev(old_)->id + 1u;
+        next_id_ = std::prev(old_)->id + 1U;
     }
     void add() {
         const std::uint32_t greatest_id = (old_ == old_end_ ? end_id_ : old_->id) - 1;
-        if (next_id_ > greatest_id) {
-            in_.fail();
-            return;
-        }
+        if (next_id_ > greatest_id) return refuse();
         const std::uint32_t id = next_id_ + in_.varint_up_to(greatest_id - next_id_);
         Entry blank;
         blank.id = static_cast<std::uint16_t>(id);

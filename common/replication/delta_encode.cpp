@@ -6,9 +6,8 @@
 #include "common/replication/delta_format.h"
 
 namespace fts::replication {
+namespace delta_format {
 namespace {
-
-using namespace delta_format;
 
 constexpr std::size_t kMaxCoinBytes = kMaxAddedBytes + 1 + kMaxPairBytes + 2;
 constexpr std::size_t kIds = 0x10000;
@@ -271,21 +270,32 @@ void write_header(ByteWriter& out, const Snapshot& baseline, const Snapshot& cur
     }
 }
 
-}  // namespace
+std::vector<std::vector<std::uint8_t>> with_headers(const std::vector<PartCutter::Part>& bodies,
+                                                    const Snapshot& baseline,
+                                                    const Snapshot& current) {
+    std::vector<std::vector<std::uint8_t>> parts;
+    parts.reserve(bodies.size());
+    PartHeader header{.tick = current.tick,
+                      .baseline_tick = baseline.tick,
+                      .part = 0,
+                      .part_count = static_cast<std::uint16_t>(bodies.size())};
+    for (const PartCutter::Part& body : bodies) {
+        ByteWriter part;
+        write_header(part, baseline, current, header, body);
+        part.append(body.body);
+        parts.push_back(part.take());
+        ++header.part;
+    }
+    return parts;
+}
 
-std::vector<std::vector<std::uint8_t>> encode_delta(const Snapshot& baseline,
-                                                    const Snapshot& current,
-                                                    std::size_t max_part_bytes) {
-    assert(max_part_bytes >= kMinPartBytes);
-    assert(is_canonical(baseline) && is_canonical(current));
-    static const Snapshot kNothing;
-    const Snapshot& base = can_be_named(baseline, current) ? baseline : kNothing;
-    const std::uint32_t ticks = current.tick - base.tick;
-
+std::vector<std::vector<std::uint8_t>> encode(const Snapshot& baseline, const Snapshot& current,
+                                              std::size_t max_part_bytes) {
+    const std::uint32_t ticks = current.tick - baseline.tick;
     PartCutter cutter(max_part_bytes - kMaxHeaderBytes);
-    write_list(cutter, 0, base.balls, current.balls, ticks);
+    write_list(cutter, 0, baseline.balls, current.balls, ticks);
     cutter.end_list(kFirstCoinKey);
-    write_list(cutter, kFirstCoinKey, base.coins, current.coins, ticks);
+    write_list(cutter, kFirstCoinKey, baseline.coins, current.coins, ticks);
     cutter.end_list(kHitsKey);
     for (const HitState& hit : current.hits) {
         ByteWriter record;
@@ -294,21 +304,21 @@ std::vector<std::vector<std::uint8_t>> encode_delta(const Snapshot& baseline,
     }
     const std::vector<PartCutter::Part> bodies = cutter.finish();
     if (bodies.size() > kMaxParts) return {};
+    return with_headers(bodies, baseline, current);
+}
 
-    std::vector<std::vector<std::uint8_t>> parts;
-    parts.reserve(bodies.size());
-    PartHeader header{.tick = current.tick,
-                      .baseline_tick = base.tick,
-                      .part = 0,
-                      .part_count = static_cast<std::uint16_t>(bodies.size())};
-    for (const PartCutter::Part& body : bodies) {
-        ByteWriter part;
-        write_header(part, base, current, header, body);
-        part.append(body.body);
-        parts.push_back(part.take());
-        ++header.part;
+}  // namespace
+}  // namespace delta_format
+
+std::vector<std::vector<std::uint8_t>> encode_delta(const Snapshot& baseline,
+                                                    const Snapshot& current,
+                                                    std::size_t max_part_bytes) {
+    assert(max_part_bytes >= kMinPartBytes);
+    assert(is_canonical(baseline) && is_canonical(current));
+    if (delta_format::can_be_named(baseline, current)) {
+        return delta_format::encode(baseline, current, max_part_bytes);
     }
-    return parts;
+    return delta_format::encode(Snapshot{}, current, max_part_bytes);
 }
 
 }  // namespace fts::replication

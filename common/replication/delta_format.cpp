@@ -5,12 +5,12 @@ namespace {
 
 class Fnv1a {
   public:
-    void add(std::uint32_t word) { hash_ = (hash_ ^ word) * 1099511628211u; }
+    void add(std::uint32_t word) { hash_ = (hash_ ^ word) * 1099511628211U; }
     void add(std::int32_t word) { add(static_cast<std::uint32_t>(word)); }
     std::uint16_t top_16_bits() const { return static_cast<std::uint16_t>(hash_ >> 48); }
 
   private:
-    std::uint64_t hash_ = 14695981039346656037u;
+    std::uint64_t hash_ = 14695981039346656037U;
 };
 
 std::uint32_t byte(std::int8_t value) {

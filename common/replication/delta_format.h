@@ -29,7 +29,7 @@ static_assert(static_cast<std::uint8_t>(game::Phase::kShop) == kPhaseBits);
 inline constexpr std::uint32_t kFirstCoinKey = 0x10000;
 inline constexpr std::uint32_t kHitsKey = 0x20000;
 inline constexpr std::size_t kKeyBytes = 3;
-static_assert(kHitsKey < (1u << (7 * kKeyBytes)));
+static_assert(kHitsKey < (1U << (7 * kKeyBytes)));
 
 inline constexpr std::size_t kPartNumberBytes = 2;
 static_assert(kMaxParts < (std::size_t{1} << (7 * kPartNumberBytes)));
@@ -81,11 +81,12 @@ inline constexpr std::uint8_t kKnownCoinChanges = 0x03;
 
 inline constexpr std::size_t kMaxPairBytes = 9;
 inline constexpr std::size_t kMaxBodyBytes = 1 + 2 + 4 + 1 + 2;
-inline constexpr std::size_t kMaxAddedBytes = 1 + 3;
+inline constexpr std::size_t kMaxIdBytes = 3;
+inline constexpr std::size_t kMaxAddedBytes = 1 + kMaxIdBytes;
 inline constexpr std::size_t kMaxBallBytes =
     kMaxAddedBytes + 1 + 2 * kMaxPairBytes + 2 + kMaxBodyBytes;
 inline constexpr std::size_t kMaxHitBytes =
-    kMaxVarintBytes + 2 * 3 + kMaxPairBytes + kMaxVarintBytes;
+    kMaxVarintBytes + 2 * kMaxIdBytes + kMaxPairBytes + kMaxVarintBytes;
 inline constexpr std::size_t kMinHitBytes = 5;
 
 static_assert(kMaxHeaderBytes + kMaxBallBytes + kClosingBytes <= kMinPartBytes);

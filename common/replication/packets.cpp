@@ -15,7 +15,7 @@ constexpr std::uint8_t kDash = 0x02;
 constexpr std::uint8_t kThrustFollows = 0x04;
 constexpr unsigned kRepeatShift = 3;
 constexpr std::size_t kMaxRun = 32;
-static_assert(kMaxRun == (0x100u >> kRepeatShift));
+static_assert(kMaxRun == (0x100U >> kRepeatShift));
 
 using Inputs = std::vector<game::InputCommand>;
 

@@ -19,11 +19,9 @@ bool is_older(const Slot& a, const Slot& b) {
 
 void SnapshotHistory::add(std::shared_ptr<const Snapshot> snapshot) {
     assert(snapshot);
-    const auto same_tick = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) {
-        return slot && slot->tick == snapshot->tick;
-    });
-    if (same_tick != slots_.end()) {
-        *same_tick = std::move(snapshot);
+    for (Slot& slot : slots_) {
+        if (!slot || slot->tick != snapshot->tick) continue;
+        slot = std::move(snapshot);
         return;
     }
     Slot& oldest = *std::min_element(slots_.begin(), slots_.end(), is_older);

@@ -28,7 +28,7 @@ std::size_t first_character_bytes(std::string_view text) {
     std::uint32_t code_point = byte(0) & static_cast<std::uint8_t>(~form->lead_mask);
     for (std::size_t i = 1; i < form->bytes; ++i) {
         if ((byte(i) & 0xC0) != 0x80) return 0;
-        code_point = code_point << 6 | (byte(i) & 0x3Fu);
+        code_point = code_point << 6 | (byte(i) & 0x3FU);
     }
     const bool surrogate = code_point >= kFirstSurrogate && code_point <= kLastSurrogate;
     return code_point < form->least || code_point > kLastCodePoint || surrogate ? 0 : form->bytes;

@@ -23,7 +23,7 @@ inline constexpr std::uint8_t kInputPacketTag = 0x01;
 inline constexpr std::uint8_t kSnapshotPacketTag = 0x02;
 // What a SnapshotPacket adds to its part, at most.
 inline constexpr std::size_t kMaxSnapshotPacketOverheadBytes = 6;
-// Inputs that all differ; two tags, two varints.
+// A tag, two varints, and inputs that all differ.
 inline constexpr std::size_t kMaxInputPacketBytes = 1 + 2 * 5 + 3 * kMaxInputsPerPacket;
 
 // Texts are well-formed UTF-8. The name in a JoinRequest is as the player typed it and may have
@@ -34,8 +34,9 @@ inline constexpr std::size_t kMaxTextBytes = 512;
 inline constexpr std::size_t kMaxControlMessageBytes = 8 * 1024;
 // Players in a Roster, shares in a KnockOff.
 inline constexpr std::size_t kMaxPlayersInMessage = game::kMaxPlayersPerArena;
-// A PlayerInfo's name, five counts, two ids, a flag, and a key and length for each and for itself.
-inline constexpr std::size_t kMaxPlayerInfoBytes = game::kMaxNameBytes + 5 * 5 + 2 * 3 + 1 + 10 * 2;
+// A PlayerInfo's name, and the rest: five counts (25), an id and a colour (6), a flag (1), and two
+// bytes of key and length for each and for itself (20).
+inline constexpr std::size_t kMaxPlayerInfoBytes = game::kMaxNameBytes + 52;
 static_assert(kMaxPlayersInMessage * kMaxPlayerInfoBytes < kMaxControlMessageBytes);
 static_assert(static_cast<std::size_t>(game::kMaxChatBytes) <= kMaxTextBytes);
 static_assert(static_cast<std::size_t>(game::kMaxNameBytes) <= kMaxTextBytes);

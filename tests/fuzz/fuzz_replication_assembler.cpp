@@ -7,8 +7,11 @@
 #include "common/replication/delta.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::is_canonical;
+using fts::replication::Snapshot;
+using fts::replication::SnapshotAssembler;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace fts::replication;
     std::span<const std::uint8_t> rest(data, size);
     SnapshotAssembler assembler;
     while (!rest.empty()) {

@@ -5,8 +5,10 @@
 #include "common/replication/wire.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::decode_client_message;
+using fts::replication::encode;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace fts::replication;
     const auto message = decode_client_message(std::span(data, size));
     if (!message) return 0;
     const auto bytes = encode(*message);

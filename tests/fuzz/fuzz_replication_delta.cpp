@@ -9,7 +9,10 @@
 
 namespace {
 
-using namespace fts::replication;
+using fts::replication::BallState;
+using fts::replication::decode_part;
+using fts::replication::encode_delta;
+using fts::replication::Snapshot;
 
 constexpr std::size_t kHeaderBytes = 5;  // tick, age, flags, digest
 constexpr std::size_t kFlags = 2;

@@ -5,8 +5,12 @@
 #include "common/replication/wire.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::decode_input_packet;
+using fts::replication::encode;
+using fts::replication::kMaxInputPacketBytes;
+using fts::replication::kMaxInputsPerPacket;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace fts::replication;
     const auto packet = decode_input_packet(std::span(data, size));
     if (!packet) return 0;
     if (packet->inputs.size() > kMaxInputsPerPacket) std::abort();

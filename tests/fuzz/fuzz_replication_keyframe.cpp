@@ -6,8 +6,13 @@
 #include "common/replication/delta.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::decode_part;
+using fts::replication::encode_delta;
+using fts::replication::is_canonical;
+using fts::replication::kAmplePartBytes;
+using fts::replication::Snapshot;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace fts::replication;
     const auto snapshot = decode_part(Snapshot{}, std::span(data, size));
     if (!snapshot) return 0;
     if (!is_canonical(*snapshot)) std::abort();

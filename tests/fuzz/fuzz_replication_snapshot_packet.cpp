@@ -7,8 +7,11 @@
 #include "common/replication/wire.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::decode_snapshot_packet;
+using fts::replication::encode;
+using fts::replication::peek_part;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace fts::replication;
     const std::span<const std::uint8_t> bytes(data, size);
     const auto packet = decode_snapshot_packet(bytes);
     if (!packet) return 0;

@@ -22,7 +22,7 @@ struct Stream {
     Snapshot at(Tick tick) { return wild_successor(rng, baseline, tick); }
     Parts parts_of(const Snapshot& snapshot) {
         Parts parts = encode_delta(baseline, snapshot, kPartBytes);
-        EXPECT_GE(parts.size(), 3u);
+        EXPECT_GE(parts.size(), 3U);
         return parts;
     }
 };
@@ -53,7 +53,7 @@ TEST(SnapshotAssembler, RepeatedPartsChangeNothing) {
     }
     EXPECT_EQ(assembler.add(stream.baseline, parts.back()), now);
     EXPECT_FALSE(assembler.add(stream.baseline, parts.back())) << "a tick is completed once";
-    EXPECT_EQ(assembler.malformed_count(), 0u);
+    EXPECT_EQ(assembler.malformed_count(), 0U);
 }
 
 TEST(SnapshotAssembler, InterleavedTicksAreKeptApart) {
@@ -85,7 +85,7 @@ TEST(SnapshotAssembler, TicksOlderThanACompletedOneAreOver) {
     for (std::size_t i = 0; i + 1 < late.size(); ++i) assembler.add(stream.baseline, late[i]);
     EXPECT_EQ(assembler.add(stream.baseline, late.back()), second);
     EXPECT_FALSE(assembler.add(stream.baseline, early.back()));
-    EXPECT_EQ(assembler.malformed_count(), 0u);
+    EXPECT_EQ(assembler.malformed_count(), 0U);
 }
 
 TEST(SnapshotAssembler, MalformedPartIsCountedAndDoesNoHarm) {
@@ -98,11 +98,11 @@ TEST(SnapshotAssembler, MalformedPartIsCountedAndDoesNoHarm) {
     EXPECT_FALSE(assembler.add(stream.baseline, broken));
     EXPECT_FALSE(assembler.add(stream.baseline, {}));
     EXPECT_FALSE(assembler.add(Snapshot{}, parts.front())) << "not its baseline";
-    EXPECT_EQ(assembler.malformed_count(), 3u);
+    EXPECT_EQ(assembler.malformed_count(), 3U);
     std::optional<Snapshot> whole;
     for (const auto& part : parts) whole = assembler.add(stream.baseline, part);
     EXPECT_EQ(whole, now);
-    EXPECT_EQ(assembler.malformed_count(), 3u);
+    EXPECT_EQ(assembler.malformed_count(), 3U);
 }
 
 TEST(SnapshotAssembler, PartsOfDifferentSnapshotsOfOneTickDoNotMix) {
@@ -114,12 +114,12 @@ TEST(SnapshotAssembler, PartsOfDifferentSnapshotsOfOneTickDoNotMix) {
     SnapshotAssembler assembler;
     EXPECT_FALSE(assembler.add(stream.baseline, parts.front()));
     EXPECT_FALSE(assembler.add(stream.baseline, strangers.back()));
-    EXPECT_EQ(assembler.malformed_count(), 1u);
+    EXPECT_EQ(assembler.malformed_count(), 1U);
 
     const Parts coarser = encode_delta(stream.baseline, now, 3 * kPartBytes);
     ASSERT_NE(coarser.size(), parts.size());
     EXPECT_FALSE(assembler.add(stream.baseline, coarser.back()));
-    EXPECT_EQ(assembler.malformed_count(), 2u);
+    EXPECT_EQ(assembler.malformed_count(), 2U);
 }
 
 TEST(SnapshotAssembler, GivesUpTheOldestOfTooManyUnfinishedTicks) {
@@ -142,7 +142,7 @@ TEST(SnapshotAssembler, GivesUpTheOldestOfTooManyUnfinishedTicks) {
     EXPECT_FALSE(rest_of(0)) << "its first part was given up";
     EXPECT_EQ(rest_of(1), snapshots[1]);
     EXPECT_EQ(rest_of(SnapshotAssembler::kMaxPendingTicks), snapshots.back());
-    EXPECT_EQ(assembler.malformed_count(), 0u);
+    EXPECT_EQ(assembler.malformed_count(), 0U);
 }
 
 TEST(SnapshotAssembler, TickZeroIsATickLikeAnyOther) {

@@ -25,7 +25,7 @@ void expect_sound(const Snapshot& baseline, const Bytes& bytes) {
     ASSERT_LE(snapshot->coins.size(), baseline.coins.size() + bytes.size());
     ASSERT_LE(snapshot->hits.size(), bytes.size());
     const auto again = encode_delta(baseline, *snapshot, 100'000);
-    ASSERT_EQ(again.size(), 1u);
+    ASSERT_EQ(again.size(), 1U);
     ASSERT_EQ(decode_part(baseline, again.front()), snapshot);
 }
 
@@ -59,7 +59,7 @@ TEST(DamagedPart, WithAnyBitFlippedIsSoundOrNothing) {
         const SnapshotPair pair = wild_pair(rng, 20);
         for (Bytes part : encode_delta(pair.before, pair.now, 300)) {
             for (std::size_t bit = 0; bit < 8 * part.size(); ++bit) {
-                const auto mask = static_cast<std::uint8_t>(1u << (bit % 8));
+                const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
                 part[bit / 8] ^= mask;
                 ASSERT_NO_FATAL_FAILURE(expect_sound(pair.before, part)) << bit;
                 part[bit / 8] ^= mask;
@@ -93,7 +93,7 @@ TEST(DamagedPart, WithARandomBodyIsSoundOrNothing) {
         ASSERT_NO_FATAL_FAILURE(expect_sound(pair.before, part));
         accepted += decode_part(pair.before, part).has_value();
     }
-    EXPECT_GT(accepted, 1000u) << "the test no longer reaches what it is about";
+    EXPECT_GT(accepted, 1000U) << "the test no longer reaches what it is about";
 }
 
 TEST(DamagedPart, RandomBytesAreSoundOrNothing) {

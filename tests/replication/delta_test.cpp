@@ -29,7 +29,7 @@ std::optional<Snapshot> assembled(const Snapshot& baseline, const Parts& parts) 
         EXPECT_FALSE(whole) << "whole before its last part";
         whole = assembler.add(baseline, part);
     }
-    EXPECT_EQ(assembler.malformed_count(), 0u);
+    EXPECT_EQ(assembler.malformed_count(), 0U);
     return whole;
 }
 
@@ -79,7 +79,7 @@ TEST(Delta, UnrelatedSnapshotsServeAsBaselinesToo) {
         Snapshot now = wild_snapshot(rng, 1003, 80);
         now.arena = before.arena;
         const Parts parts = encode_delta(before, now, 300);
-        EXPECT_EQ(peek_part(parts.front())->baseline_tick, 1000u);
+        EXPECT_EQ(peek_part(parts.front())->baseline_tick, 1000U);
         ASSERT_EQ(assembled(before, parts), now);
     }
 }
@@ -90,7 +90,7 @@ TEST(Delta, KeyframeNeedsNoBaseline) {
         Rng rng(seed);
         const Snapshot now = wild_snapshot(rng, static_cast<Tick>(pick(rng, 0, 9999)), 100);
         const Parts parts = encode_delta(Snapshot{}, now, 200);
-        for (const auto& part : parts) EXPECT_EQ(peek_part(part)->baseline_tick, 0u);
+        for (const auto& part : parts) EXPECT_EQ(peek_part(part)->baseline_tick, 0U);
         ASSERT_EQ(assembled(Snapshot{}, parts), now);
     }
 }
@@ -106,7 +106,7 @@ TEST(Delta, BaselineThatCannotBeNamedMakesAKeyframe) {
     for (const Snapshot* baseline : {&too_old, &not_older, &without_tick, &elsewhere}) {
         SCOPED_TRACE(baseline->tick);
         const Parts parts = encode_delta(*baseline, now, kDatagramBytes);
-        EXPECT_EQ(peek_part(parts.front())->baseline_tick, 0u);
+        EXPECT_EQ(peek_part(parts.front())->baseline_tick, 0U);
         EXPECT_EQ(assembled(Snapshot{}, parts), now);
     }
     Snapshot oldest_allowed = now;
@@ -120,7 +120,7 @@ TEST(Delta, PartsSayWhatTheyArePartOf) {
     Rng rng(9);
     const SnapshotPair pair = wild_pair(rng, 100);
     const Parts parts = encode_delta(pair.before, pair.now, 100);
-    ASSERT_GT(parts.size(), 2u);
+    ASSERT_GT(parts.size(), 2U);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const auto header = peek_part(parts[i]);
         ASSERT_TRUE(header);
@@ -187,7 +187,7 @@ TEST(Delta, SnapshotThatGoesAsPredictedIsAHandfulOfBytesHoweverManyBalls) {
     Snapshot now = before;
     now.tick = 102;
     const Parts parts = encode_delta(before, now, kDatagramBytes);
-    EXPECT_LE(total_bytes(parts), 10u);
+    EXPECT_LE(total_bytes(parts), 10U);
     EXPECT_EQ(assembled(before, parts), now);
 }
 

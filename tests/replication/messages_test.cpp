@@ -104,7 +104,7 @@ TEST(Messages, Roster) {
     roster.players = {{1, "Ada", 0, 1, 2, 3, 4, 5, false},
                       {9, "", 255, 10, 0, 0, 0, 2'000'000'000, true}};
     const Roster back = through_the_wire(roster);
-    ASSERT_EQ(back.players.size(), 2u);
+    ASSERT_EQ(back.players.size(), 2U);
     const PlayerInfo &ada = back.players[0], &other = back.players[1];
     EXPECT_EQ(ada.player_id, 1);
     EXPECT_EQ(ada.name, "Ada");
@@ -130,8 +130,8 @@ TEST(Messages, Wallet) {
 TEST(Messages, PurchaseResult) {
     for (int i = 0; i <= static_cast<int>(PurchaseOutcome::kStoreFailed); ++i) {
         const auto outcome = static_cast<PurchaseOutcome>(i);
-        const PurchaseResult back = through_the_wire(PurchaseResult{~0ull, outcome});
-        EXPECT_EQ(back.request_id, ~0ull);
+        const PurchaseResult back = through_the_wire(PurchaseResult{~0ULL, outcome});
+        EXPECT_EQ(back.request_id, ~0ULL);
         EXPECT_EQ(back.outcome, outcome);
     }
 }
@@ -140,7 +140,7 @@ TEST(Messages, KnockOff) {
     const KnockOff back = through_the_wire(KnockOff{77, 5, {{1, 3, false}, {2, 1, true}}});
     EXPECT_EQ(back.victim_ball, 77);
     EXPECT_EQ(back.victim_player, 5);
-    ASSERT_EQ(back.shares.size(), 2u);
+    ASSERT_EQ(back.shares.size(), 2U);
     EXPECT_EQ(back.shares[0].player_id, 1);
     EXPECT_EQ(back.shares[0].coins, 3);
     EXPECT_FALSE(back.shares[0].assist);

@@ -16,7 +16,7 @@ using testing::Rng;
 using Bytes = std::vector<std::uint8_t>;
 
 TEST(Varint, EveryValueHasOneFormAndComesBack) {
-    for (const std::uint32_t value : {0u, 1u, 127u, 128u, 16'383u, 16'384u, 0xFFFFFFFFu}) {
+    for (const std::uint32_t value : {0U, 1U, 127U, 128U, 16'383U, 16'384U, 0xFFFFFFFFU}) {
         ByteWriter out;
         out.varint(value);
         EXPECT_LE(out.size(), kMaxVarintBytes);
@@ -28,7 +28,7 @@ TEST(Varint, EveryValueHasOneFormAndComesBack) {
          {Bytes{}, Bytes{0x80}, Bytes{0x80, 0x00}, Bytes{0xFF, 0x80, 0x00},
           Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0x10}, Bytes{0x80, 0x80, 0x80, 0x80, 0x80, 0x01}}) {
         ByteReader in(bytes);
-        EXPECT_EQ(in.varint(), 0u);
+        EXPECT_EQ(in.varint(), 0U);
         EXPECT_TRUE(in.failed());
     }
 }

@@ -60,7 +60,7 @@ const Bytes kDelta = {0x6a, 0x06, 0x02, 0x1e, 0x26,                           //
 
 TEST(WorkedExample, SnapshotPart) {
     const auto parts = encode_delta(tick_100(), tick_106(), 1100);
-    ASSERT_EQ(parts.size(), 1u);
+    ASSERT_EQ(parts.size(), 1U);
     EXPECT_EQ(parts.front(), kDelta);
     EXPECT_EQ(decode_part(tick_100(), kDelta), tick_106());
 }
