@@ -1,5 +1,7 @@
 #include "tests/server/match/match_bench.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace fts::server {
@@ -90,6 +92,22 @@ ScoreLine MatchBench::score_of(PlayerId player) const {
     for (const ScoreLine& line : match.scoreboard())
         if (line.player == player) return line;
     return {};
+}
+
+game::InputCommand ram(const replication::Snapshot& snapshot, PlayerId player, Prey prey) {
+    const auto own = std::find_if(snapshot.balls.begin(), snapshot.balls.end(),
+                                  [player](const auto& ball) { return ball.player_id == player; });
+    if (own == snapshot.balls.end()) return {};
+    physics::Vec2d nearest = physics::Vec2d::Zero();
+    for (const auto& ball : snapshot.balls) {
+        if (ball.id == own->id || (prey == Prey::kAi && ball.player_id != 0)) continue;
+        const physics::Vec2d way = position_of(ball) - position_of(*own);
+        if (nearest.isZero() || way.norm() < nearest.norm()) nearest = way;
+    }
+    const physics::Vec2d direction = nearest.normalized();
+    const physics::Vec2d sideways =
+        velocity_of(*own) - velocity_of(*own).dot(direction) * direction;
+    return game::command_toward((direction - sideways * 0.4).normalized());
 }
 
 }  // namespace fts::server

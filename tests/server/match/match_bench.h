@@ -48,4 +48,8 @@ class MatchBench {
     std::vector<Outgoing> said_;
 };
 
+// Straight at the nearest AI ball, or anybody, without a thought for the edge.
+enum class Prey { kAi, kAnybody };
+game::InputCommand ram(const replication::Snapshot& snapshot, PlayerId player, Prey prey);
+
 }  // namespace fts::server

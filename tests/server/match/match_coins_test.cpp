@@ -13,22 +13,10 @@ using replication::LevelOutcome;
 
 constexpr game::InputCommand kEast{.thrust_x = 127};
 
-// Straight at the nearest ball that does not move by itself, until it is over the edge.
 void push_off_all_ai(MatchBench& bench, PlayerId player) {
     bench.tick_until(Phase::kPlaying);
-    std::vector<LevelEnded> ended;
     for (int tick = 0; tick < 60 * 110 && bench.match.phase() == Phase::kPlaying; ++tick) {
-        const auto own = bench.ball_of(player);
-        game::InputCommand input;
-        if (own) {
-            Vec2d way = Vec2d::Zero();
-            for (const auto& ball : bench.match.snapshot().balls)
-                if (ball.player_id == 0) way = position_of(ball) - position_of(*own);
-            const Vec2d direction = way.normalized();
-            const Vec2d sideways = velocity_of(*own) - velocity_of(*own).dot(direction) * direction;
-            input = game::command_toward((direction - sideways * 0.4).normalized());
-        }
-        bench.match.set_input(player, input);
+        bench.match.set_input(player, ram(bench.match.snapshot(), player, Prey::kAi));
         bench.tick();
     }
 }

@@ -11,27 +11,10 @@ using game::Phase;
 using physics::Vec2d;
 using replication::CollisionReport;
 
-// Straight at the nearest other ball, without a thought for the edge.
-game::InputCommand ram(const MatchBench& bench, PlayerId player) {
-    const auto own = bench.ball_of(player);
-    if (!own) return {};
-    Vec2d nearest = Vec2d::Zero();
-    double nearest_m = 1e9;
-    for (const auto& ball : bench.match.snapshot().balls) {
-        const Vec2d way = position_of(ball) - position_of(*own);
-        if (ball.player_id == player || way.norm() >= nearest_m) continue;
-        nearest = way;
-        nearest_m = way.norm();
-    }
-    const Vec2d direction = nearest.normalized();
-    const Vec2d sideways = velocity_of(*own) - velocity_of(*own).dot(direction) * direction;
-    return game::command_toward((direction - sideways * 0.4).normalized());
-}
-
 std::vector<CollisionReport> reports_of_ramming(MatchBench& bench, PlayerId player, int ticks) {
     std::vector<CollisionReport> reports;
     for (int tick = 0; tick < ticks; ++tick) {
-        bench.match.set_input(player, ram(bench, player));
+        bench.match.set_input(player, ram(bench.match.snapshot(), player, Prey::kAnybody));
         bench.tick();
         for (const auto& report : bench.said<CollisionReport>(player)) reports.push_back(report);
     }
@@ -81,7 +64,7 @@ TEST(MatchCollisions, reach_both_players_of_a_hit_each_from_the_own_side) {
     const PlayerId first = bench.join(1), second = bench.join(2);
     bench.tick_until(Phase::kPlaying);
     for (int tick = 0; tick < 60 * 30; ++tick) {
-        bench.match.set_input(first, ram(bench, first));
+        bench.match.set_input(first, ram(bench.match.snapshot(), first, Prey::kAnybody));
         bench.tick();
         const auto mine = bench.said<CollisionReport>(first);
         const auto theirs = bench.said<CollisionReport>(second);
@@ -155,7 +138,7 @@ TEST(MatchCollisions, hits_since_the_last_snapshot_are_in_the_next_and_then_forg
     bench.match.clear_hits();
     while (bench.match.snapshot().hits.empty()) {
         ASSERT_LT(bench.match.snapshot().tick, 60u * 30u);
-        bench.match.set_input(player, ram(bench, player));
+        bench.match.set_input(player, ram(bench.match.snapshot(), player, Prey::kAnybody));
         bench.tick();
     }
     const auto hit = bench.match.snapshot().hits.front();
