@@ -12,6 +12,10 @@ using Real = long double;
 using Vec = Eigen::Matrix<Real, 2, 1>;
 constexpr Real kNeverS = std::numeric_limits<Real>::infinity();
 
+Real real(double value) {
+    return static_cast<Real>(value);
+}
+
 struct Ball {
     Vec x, v;
     Real r, m;
@@ -38,16 +42,16 @@ Real exit(Real a, Real b, Real c) {
 Real fall_time(const Platform& platform, const Ball& ball) {
     const Real a = ball.v.squaredNorm(), b = ball.x.dot(ball.v), x2 = ball.x.squaredNorm();
     if (const auto* disc = std::get_if<Disc>(&platform)) {
-        const Real radius = disc->radius_m;
+        const Real radius = real(disc->radius_m);
         return exit(a, b, x2 - radius * radius);
     }
     if (const auto* ring = std::get_if<Ring>(&platform)) {
-        const Real inner = ring->inner_radius_m, outer = ring->outer_radius_m;
+        const Real inner = real(ring->inner_radius_m), outer = real(ring->outer_radius_m);
         return std::min(entry(a, b, x2 - inner * inner), exit(a, b, x2 - outer * outer));
     }
     Real first = kNeverS;
     for (int axis = 0; axis < 2; ++axis) {
-        const Real half = std::get<Rectangle>(platform).half_extents_m[axis];
+        const Real half = real(std::get<Rectangle>(platform).half_extents_m[axis]);
         if (ball.v[axis] != 0) {
             first =
                 std::min(first, (std::copysign(half, ball.v[axis]) - ball.x[axis]) / ball.v[axis]);
@@ -61,7 +65,7 @@ class Oracle {
     explicit Oracle(const Scene& scene) : scene_(scene) {
         for (const BodyDef& body : scene.bodies) {
             balls_.push_back({body.position_m.cast<Real>(), body.velocity_mps.cast<Real>(),
-                              body.radius_m, body.mass_kg});
+                              real(body.radius_m), real(body.mass_kg)});
         }
     }
 
@@ -109,7 +113,7 @@ class Oracle {
         const Real out = side % 2 == 0 ? -1 : 1;
         const Vec2d& corner = side % 2 == 0 ? scene_.walls->min_m : scene_.walls->max_m;
         const Real speed = out * ball.v[axis];
-        const Real gap = out * (static_cast<Real>(corner[axis]) - ball.x[axis]) - ball.r;
+        const Real gap = out * (real(corner[axis]) - ball.x[axis]) - ball.r;
         return speed > 0 ? std::max<Real>(0, gap / speed) : kNeverS;
     }
 
@@ -144,7 +148,7 @@ class Oracle {
 }  // namespace
 
 Outcome coast(const Scene& scene, double span_s) {
-    return Oracle(scene).run(span_s);
+    return Oracle(scene).run(real(span_s));
 }
 
 }  // namespace fts::physics
