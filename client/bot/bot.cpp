@@ -69,6 +69,7 @@ void Bot::start_session() {
 
 void Bot::update(double now_s) {
     session_->update(now_s);
+    if (is_retired_) return;
     note_status();
     note_notices();
     if (session_->status() == client::Status::kPlaying && now_s >= next_decision_s_) {
@@ -83,6 +84,11 @@ void Bot::update(double now_s) {
     run_due_steps(now_s);
 }
 
+void Bot::retire(double now_s) {
+    is_retired_ = true;
+    leave(now_s);
+}
+
 void Bot::leave(double now_s) {
     session_->leave(now_s);
     note_status();
@@ -90,7 +96,8 @@ void Bot::leave(double now_s) {
 }
 
 bool Bot::finished() const {
-    if (session_->status() != client::Status::kEnded) return false;
+    // What has just happened may still set a step off.
+    if (session_->status() != client::Status::kEnded || !moments_.empty()) return false;
     return std::ranges::none_of(scheduled_, [&](const Scheduled& item) {
         return std::holds_alternative<Join>(script_.steps[item.step].action);
     });

@@ -35,7 +35,8 @@ class Bot {
     // Several times a tick or less: receives, acts, sends. `now_s` is seconds since the start of
     // the run.
     void update(double now_s);
-    void leave(double now_s);
+    // For good, whatever the script says; further updates only let the goodbye out.
+    void retire(double now_s);
 
     // Has ended, and no step of its script is left to bring it back.
     bool finished() const;
@@ -44,6 +45,7 @@ class Bot {
     std::optional<net::PublicKey> server_key() const { return session_->server_key(); }
 
   private:
+    void leave(double now_s);
     void note_status();
     void note_notices();
     void note_view(const client::View& view, double now_s);
@@ -80,6 +82,7 @@ class Bot {
     client::View last_view_;
     double next_decision_s_ = 0.0;
 
+    bool is_retired_ = false;
     bool is_ready_ = false;
     bool was_refused_ = false;  // in this visit to the shop: asking again would not help
     std::optional<std::pair<std::uint64_t, int>> pending_purchase_;  // request id, price in coins

@@ -80,8 +80,8 @@ void Crowd::update(double now_s) {
     if (known_servers_ && !pinned_) pin_server_key();
 }
 
-void Crowd::leave(double now_s) {
-    for (Member& member : members_) member.bot->leave(now_s);
+void Crowd::retire(double now_s) {
+    for (Member& member : members_) member.bot->retire(now_s);
     if (hits_.is_open()) hits_.flush();
 }
 

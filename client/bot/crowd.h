@@ -38,7 +38,8 @@ class Crowd {
 
     // `now_s`: seconds since the start of the run.
     void update(double now_s);
-    void leave(double now_s);
+    // Every bot leaves for good; further updates only let the goodbyes out.
+    void retire(double now_s);
     // Every bot has ended, or the script's goals are reached.
     bool finished() const;
 

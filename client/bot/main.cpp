@@ -117,7 +117,7 @@ void play(bot::Crowd& crowd, double seconds, bot::Report& report) {
 
 // Sessions end here, after what is reported was counted; held-back goodbyes are moved on.
 void say_goodbye(bot::Crowd& crowd, const Options& options, double now_s) {
-    crowd.leave(now_s);
+    crowd.retire(now_s);
     const double until_s = now_s + kGoodbyeS + (options.delay_ms + options.jitter_ms) * 1e-3;
     for (; now_s < until_s; now_s += 1.0 / kLoopHz) {
         std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / kLoopHz));

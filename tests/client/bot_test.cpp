@@ -86,6 +86,20 @@ TEST(Bot, is_finished_once_nothing_will_bring_it_back) {
     EXPECT_TRUE(stage.bot->finished());
 }
 
+TEST(Bot, is_not_finished_while_its_end_sets_a_step_off_but_retires_for_good) {
+    Stage stage(R"({"steps": [{"at_s": 1.0, "do": "leave"},
+                              {"when": "ended", "each_time": true, "after_s": 0.2, "do": "join"}]})");
+    for (int i = 0; i < 180; ++i) {
+        stage.run(kTickS);
+        ASSERT_FALSE(stage.bot->finished()) << "tick " << i;
+    }
+    EXPECT_EQ(stage.received<replication::JoinRequest>().size(), 2U);
+    stage.bot->retire(stage.now_s);
+    stage.run(1.0);
+    EXPECT_EQ(stage.received<replication::JoinRequest>().size(), 2U);
+    EXPECT_TRUE(stage.server.disconnected);
+}
+
 TEST(Bot, buys_what_its_pilot_wants_one_by_one_and_then_is_ready) {
     Stage stage("{}", "chaser");
     stage.run(1.0);
