@@ -204,6 +204,8 @@ ParsedScript parse_script(const std::string& text, const std::string& file, int 
     } catch (const json::parse_error& failure) {
         return {std::nullopt, file + ": " + line_and_column(text, failure.byte) +
                                   " is not JSON; check quotes, commas and brackets there."};
+    } catch (const json::out_of_range&) {
+        return {std::nullopt, file + " holds a number that is too large; give one below 1e308."};
     }
     JsonError error{file, ""};
     JsonReader reader(root, "$", error);

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <string_view>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <thread>
@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::string_view kListening = "fts-server: listening on UDP port ";
 constexpr std::size_t kMaxSaid = 8192;  // the newest part of its output that is kept
-constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kPatience = std::chrono::seconds(10);
+constexpr int kCannotExecute = 127;  // as a shell says it
 static_assert(std::is_same_v<pid_t, int>);
 constexpr auto kNap = std::chrono::milliseconds(20);
 
@@ -32,6 +33,17 @@ std::string last_line(const std::string& text) {
     const std::size_t start = text.rfind('\n', end);
     return text.substr(start == std::string::npos ? 0 : start + 1,
                        end - (start == std::string::npos ? 0 : start + 1) + 1);
+}
+
+// In the child: only calls that are safe between fork and exec. The server is told to end when this
+// client does, whatever the client dies of.
+[[noreturn]] void become_server(pid_t parent, int output, const std::vector<char*>& arguments) {
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(kCannotExecute);
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
+    ::execv(arguments.front(), arguments.data());
+    ::_exit(kCannotExecute);
 }
 
 }  // namespace
@@ -56,11 +68,6 @@ std::unique_ptr<LocalServer> LocalServer::start(const LocalServerConfig& config,
                 "). Close some programs and try again.";
         return nullptr;
     }
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
-
     std::vector<std::string> words = {program, "--port", std::to_string(config.port)};
     if (!config.data_folder.empty()) {
         words.insert(words.end(), {"--data", config.data_folder.string()});
@@ -71,9 +78,10 @@ std::unique_ptr<LocalServer> LocalServer::start(const LocalServerConfig& config,
 
     std::unique_ptr<LocalServer> server(new LocalServer);
     server->program_ = config.program;
-    const int failure = ::posix_spawn(&server->process_, program.c_str(), &actions, nullptr,
-                                      arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const pid_t parent = ::getpid();
+    server->process_ = ::fork();
+    if (server->process_ == 0) become_server(parent, pipe[1], arguments);
+    const int failure = server->process_ < 0 ? errno : 0;
     ::close(pipe[1]);
     server->output_ = pipe[0];
     ::fcntl(server->output_, F_SETFL, O_NONBLOCK);

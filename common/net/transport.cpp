@@ -58,7 +58,7 @@ std::string to_string(const Address& address) {
 
 Resolved resolve(std::string_view host_and_port, std::uint16_t default_port) {
     const std::string quoted = "'" + std::string(host_and_port) + "'";
-    const std::optional<HostAndPort> parts = split(host_and_port);
+    std::optional<HostAndPort> parts = split(host_and_port);
     if (!parts || parts->host.empty()) {
         return {std::nullopt, quoted + " is not an address; write host, host:port or [ipv6]:port"};
     }
@@ -71,6 +71,8 @@ Resolved resolve(std::string_view host_and_port, std::uint16_t default_port) {
         }
         port = *given;
     }
+    // RFC 6761: never a question for a name server, and a bare system may have no hosts file.
+    if (parts->host == "localhost") parts->host = "127.0.0.1";
     asio::io_context context;
     asio::ip::udp::resolver resolver(context);
     asio::error_code error;

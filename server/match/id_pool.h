@@ -14,9 +14,14 @@ class IdPool {
   public:
     explicit IdPool(std::uint32_t rest_ticks) : rest_ticks_(rest_ticks) {}
 
-    // Empty when every id is in use or resting.
+    // Empty when every id is in use.
     std::optional<std::uint16_t> take(std::uint32_t now) {
         while (!resting_.empty() && now - resting_.front().second > rest_ticks_) {
+            unavailable_.erase(resting_.front().first);
+            resting_.pop_front();
+        }
+        // Rather an id that has not rested long enough than none.
+        if (unavailable_.size() == kIdCount && !resting_.empty()) {
             unavailable_.erase(resting_.front().first);
             resting_.pop_front();
         }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "common/replication/utf8.h"
 #include "server/match/match_impl.h"
 
 namespace fts::server {
@@ -47,6 +48,7 @@ Fault text_fault(const std::string& field, const std::string& text, std::size_t 
     if (text.size() > max_bytes)
         return field + " is " + std::to_string(text.size()) + " bytes long; give at most " +
                std::to_string(max_bytes);
+    if (!replication::is_utf8(text)) return field + " is not UTF-8; save the file as UTF-8";
     const bool has_control = std::any_of(text.begin(), text.end(), [](char c) {
         return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
     });

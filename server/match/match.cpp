@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 #include <utility>
 
 #include "server/match/match_impl.h"
@@ -32,8 +31,7 @@ Match::Match(const MatchConfig& config, Ledger& ledger)
 Match::~Match() = default;
 
 bool Match::has_room() const {
-    return impl_->players.size() < static_cast<std::size_t>(impl_->config.max_players) &&
-           impl_->last_player < std::numeric_limits<PlayerId>::max();
+    return impl_->players.size() < static_cast<std::size_t>(impl_->config.max_players);
 }
 
 std::optional<PlayerId> Match::join(const PlayerKey& key, const std::string& name) {
@@ -42,16 +40,43 @@ std::optional<PlayerId> Match::join(const PlayerKey& key, const std::string& nam
     assert(match.ledger.is_loaded(key));
     if (match.phase == game::Phase::kWaiting) match.begin_level();
 
-    const PlayerId id = ++match.last_player;
+    do {
+        ++match.last_player;
+    } while (match.last_player == 0 || match.players.contains(match.last_player));
+    const PlayerId id = match.last_player;
     const auto known = match.lives_of_leavers.find(key);
     Impl::Player player;
     player.key = key;
     player.name = name;
     player.lives = known == match.lives_of_leavers.end() ? game::kLivesPerLevel : known->second;
+    match.begin_score(id, player);
     match.players.emplace(id, std::move(player));
-    match.scores.emplace(id, ScoreLine{.player = id, .name = name});
     match.spawn_due();
     return id;
+}
+
+// Who comes back goes on with the old score. When the board is full, the weakest line of somebody
+// who is not here makes room.
+void Match::Impl::begin_score(PlayerId id, const Player& player) {
+    if (scores.size() >= kMaxScoreLines && !scores.contains(player.key)) {
+        const auto is_here = [this](const PlayerKey& key) {
+            return std::ranges::any_of(players,
+                                       [&](const auto& entry) { return entry.second.key == key; });
+        };
+        auto weakest = scores.end();
+        for (auto line = scores.begin(); line != scores.end(); ++line) {
+            if (is_here(line->first)) continue;
+            if (weakest == scores.end() ||
+                line->second.coins_earned < weakest->second.coins_earned) {
+                weakest = line;
+            }
+        }
+        scores.erase(weakest);
+        ++totals.scores_forgotten;
+    }
+    ScoreLine& line = scores[player.key];
+    line.player = id;
+    line.name = player.name;
 }
 
 void Match::leave(PlayerId id) {
@@ -142,7 +167,7 @@ int Match::level_number() const {
 
 std::vector<ScoreLine> Match::scoreboard() const {
     std::vector<ScoreLine> lines;
-    for (const auto& [id, line] : impl_->scores) lines.push_back(line);
+    for (const auto& [key, line] : impl_->scores) lines.push_back(line);
     std::stable_sort(lines.begin(), lines.end(), [](const ScoreLine& a, const ScoreLine& b) {
         if (a.knock_offs != b.knock_offs) return a.knock_offs > b.knock_offs;
         if (a.coins_earned != b.coins_earned) return a.coins_earned > b.coins_earned;

@@ -21,7 +21,7 @@
 
 namespace fts::server {
 
-using PlayerId = std::uint16_t;  // 1, 2, 3, ...; unique within the match, never reused
+using PlayerId = std::uint16_t;  // 1, 2, 3, ...; unique among the players who are here
 
 struct MatchConfig {
     int arena = 0;
@@ -54,7 +54,8 @@ struct MatchTotals {
     std::uint64_t hits_left_out = 0;     // of snapshots (hit_log.h)
     std::uint64_t reports_left_out = 0;  // collisions too soon after a stronger one to be reported
     std::uint64_t contacts_forgotten = 0;  // early, by attribution (attribution.h)
-    std::uint64_t drops_refused = 0;  // coins that stayed in a purse because the field was full
+    std::uint64_t drops_refused = 0;     // coins that stayed in a purse because the field was full
+    std::uint64_t scores_forgotten = 0;  // lines of leavers that made room on the scoreboard
 };
 
 // What a tick has to say to the log of the server.

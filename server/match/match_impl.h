@@ -27,6 +27,8 @@ constexpr Tick ticks_of(double duration_s) {
 }
 
 inline constexpr std::size_t kMaxFieldCoins = 256;
+inline constexpr std::size_t kMaxScoreLines = 1024;
+static_assert(kMaxScoreLines > game::kMaxPlayersPerArena);
 inline constexpr std::uint8_t kPaletteColours = 8;
 inline constexpr Tick kIdRestTicks = ticks_of(10.0);
 // A player is told of at most 10 hits a second: the strongest of each interval.
@@ -71,7 +73,8 @@ struct Match::Impl {
 
     const game::Level& level() const { return config.levels[level_index]; }
     Actor actor_of(std::uint16_t ball) const;
-    ScoreLine& score(PlayerId id) { return scores.at(id); }
+    ScoreLine& score(PlayerId id) { return scores.at(players.at(id).key); }
+    void begin_score(PlayerId id, const Player& player);
     void earn(PlayerId id, int earned);
 
     // match_phases.cpp
@@ -139,7 +142,7 @@ struct Match::Impl {
     PlayerId last_player = 0;
     std::map<PlayerId, Player> players;
     std::map<PlayerKey, int> lives_of_leavers;  // in this level: coming back does not renew them
-    std::map<PlayerId, ScoreLine> scores;
+    std::map<PlayerKey, ScoreLine> scores;  // of players and those who left, at most kMaxScoreLines
 
     replication::Roster told_roster;
     Tick next_roster_tick = 0;

@@ -114,7 +114,7 @@ replication::LevelStarted Match::Impl::level_started() const {
 replication::Roster Match::Impl::roster() const {
     replication::Roster result;
     for (const auto& [id, player] : players) {
-        const ScoreLine& line = scores.at(id);
+        const ScoreLine& line = scores.at(player.key);
         result.players.push_back({.player_id = id,
                                   .name = player.name,
                                   .colour = static_cast<std::uint8_t>((id - 1) % kPaletteColours),

@@ -87,7 +87,8 @@ nlohmann::json json_of(const ArenaReport& arena) {
               {"hits_left_out", totals.hits_left_out},
               {"reports_left_out", totals.reports_left_out},
               {"contacts_forgotten", totals.contacts_forgotten},
-              {"drops_refused", totals.drops_refused}}},
+              {"drops_refused", totals.drops_refused},
+              {"scores_forgotten", totals.scores_forgotten}}},
             {"audit", json_of(arena.audit)}};
 }
 

@@ -9,8 +9,8 @@ namespace fts::e2e {
 
 namespace {
 
-constexpr double kStartTimeoutS = 30.0;
-constexpr double kStopTimeoutS = 30.0;
+constexpr double kStartTimeoutS = 120.0;
+constexpr double kStopTimeoutS = 120.0;
 
 nlohmann::json read_json(const std::string& path) {
     std::ifstream file(path);

@@ -34,7 +34,7 @@ TEST(Arena, BotsJoinAndPlayALevelToItsEnd) {
     const harness::TempFolder data;
     ServerProcess server(data.path());
     const BotRun run =
-        run_bots(server.address(), {"--bots", "4", "--seconds", "150", "--pilot", "chaser"}, R"({
+        run_bots(server.address(), {"--bots", "4", "--seconds", "600", "--pilot", "chaser"}, R"({
             "until": {"levels_cleared": 1},
             "expect": [{"what": "joined", "at_least": 4},
                        {"what": "levels_cleared", "at_least": 1},
@@ -42,7 +42,7 @@ TEST(Arena, BotsJoinAndPlayALevelToItsEnd) {
                        {"what": "coins", "at_least": 6},
                        {"what": "hits_malformed", "at_most": 0},
                        {"what": "malformed", "at_most": 0}]})",
-                 200.0);
+                 900.0);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     ASSERT_TRUE(run.report.is_object()) << run.output;
     EXPECT_LE(total(run, "worst_energy_error"), kRoundOff);
@@ -60,12 +60,12 @@ TEST(Arena, CoinsSurviveARestartOfTheServer) {
     const std::vector<std::string> same_players = {"--bots",    "2",       "--data",
                                                    bots.path(), "--pilot", "chaser"};
     auto arguments = same_players;
-    arguments.insert(arguments.end(), {"--seconds", "120"});
+    arguments.insert(arguments.end(), {"--seconds", "400"});
     double earned = 0.0;
     {
         ServerProcess server(data.path());
         const BotRun run = run_bots(server.address(), arguments,
-                                    R"({"auto_shop": false, "until": {"coins": 6}})", 150.0);
+                                    R"({"auto_shop": false, "until": {"coins": 6}})", 600.0);
         ASSERT_EQ(run.exit_code, 0) << run.output;
         const nlohmann::json report = server.stop();
         expect_conserved(report);
@@ -74,12 +74,12 @@ TEST(Arena, CoinsSurviveARestartOfTheServer) {
     }
     ServerProcess server(data.path());
     arguments = same_players;
-    arguments.insert(arguments.end(), {"--seconds", "60"});
+    arguments.insert(arguments.end(), {"--seconds", "200"});
     const BotRun run = run_bots(
         server.address(), arguments,
         R"({"auto_shop": false, "until": {"coins": )" + std::to_string(earned) +
             R"(}, "expect": [{"what": "coins", "at_least": )" + std::to_string(earned) + "}]}",
-        90.0);
+        400.0);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     const nlohmann::json report = server.stop();
     expect_conserved(report);
@@ -111,7 +111,7 @@ std::optional<replication::CollisionReport> next_hit_of(const std::string& addre
     config.server = *server;
     client::Session session(config, *transport);
     std::optional<replication::CollisionReport> hit;
-    const double deadline_s = harness::now_s() + 60.0;
+    const double deadline_s = harness::now_s() + 240.0;
     while (!hit && harness::now_s() < deadline_s) {
         session.update(harness::now_s());
         const client::View view = session.view(harness::now_s());
@@ -145,13 +145,13 @@ TEST(Arena, ABoughtMassUpgradeChangesTheNextCollisionAsMomentumConservationPredi
     ServerProcess server(data.path());
     const BotRun run = run_bots(
         server.address(),
-        {"--bots", "1", "--seconds", "200", "--pilot", "chaser", "--data", bots.path().string()},
+        {"--bots", "1", "--seconds", "600", "--pilot", "chaser", "--data", bots.path().string()},
         R"({
             "steps": [{"when": "shop", "each_time": true, "do": "buy", "stat": "mass"}],
             "auto_shop": false,
             "until": {"purchases": 1},
             "expect": [{"what": "purchases", "at_least": 1}]})",
-        230.0);
+        900.0);
     ASSERT_EQ(run.exit_code, 0) << run.output;
 
     const auto hit = next_hit_of(server.address(), bots.file("bot-0.key"));
@@ -177,17 +177,18 @@ TEST(Arena, LossAndDelayAreFeltButNothingBreaks) {
     const harness::TempFolder data;
     ServerProcess server(data.path());
     const BotRun run = run_bots(server.address(),
-                                {"--bots", "4", "--seconds", "20", "--pilot", "chaser", "--loss",
+                                {"--bots", "4", "--seconds", "200", "--pilot", "chaser", "--loss",
                                  "0.05", "--delay-ms", "50", "--jitter-ms", "30", "--seed", "7"},
                                 R"({
+            "until": {"snapshots": 2000, "hits": 1},
             "expect": [{"what": "joined", "at_least": 4},
-                       {"what": "snapshots", "at_least": 1000},
+                       {"what": "snapshots", "at_least": 2000},
                        {"what": "loss", "at_least": 0.01, "at_most": 0.2},
                        {"what": "rtt_mean_ms", "at_least": 60},
                        {"what": "hits", "at_least": 1},
                        {"what": "malformed", "at_most": 0},
                        {"what": "hits_malformed", "at_most": 0}]})",
-                                60.0);
+                                400.0);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     expect_conserved(server.stop());
 }
@@ -203,16 +204,18 @@ TEST(Arena, SixtyFourBotsForAMinuteLeaveStateAndLedgerRight) {
                                     {"what": "malformed", "at_most": 0},
                                     {"what": "hits_malformed", "at_most": 0},
                                     {"what": "coins", "at_least": 1}]})",
-                     120.0);
+                     400.0);
         EXPECT_EQ(run.exit_code, 0) << run.output;
         first = server.stop();
         expect_conserved(first);
         EXPECT_EQ(first.at("joins"), 64);
         ASSERT_EQ(first.at("arenas").size(), 4U);
+        std::size_t players = 0;
         for (const auto& arena : first.at("arenas")) {
-            EXPECT_EQ(arena.at("scoreboard").size(), 16U);
+            players += arena.at("scoreboard").size();
             EXPECT_GT(arena.at("audit").at("ball_collisions").get<int>(), 0);
         }
+        EXPECT_EQ(players, 64U);
         std::cout << "ticks: " << first.at("ticks").dump() << '\n';
     }
     ServerProcess server(data.path());
@@ -230,10 +233,10 @@ TEST(Arena, AFullServerSaysSo) {
     const harness::TempFolder data;
     ServerProcess server(data.path(), {"--players", "1"});
     const BotRun run =
-        run_bots(server.address(), {"--bots", "2", "--seconds", "6", "--pilot", "idle"},
+        run_bots(server.address(), {"--bots", "2", "--seconds", "10", "--pilot", "idle"},
                  R"({"expect": [{"what": "joined", "at_least": 1, "at_most": 1},
                        {"what": "ended_because", "contains": "full"}]})",
-                 30.0);
+                 200.0);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     server.stop();
 }
@@ -246,8 +249,12 @@ TEST(Arena, AnotherProtocolVersionIsToldBothVersions) {
                  {"--bots", "1", "--seconds", "6", "--pilot", "idle", "--protocol-version", "999"},
                  R"({"expect": [{"what": "joined", "at_most": 0},
                        {"what": "ended_because", "contains": "999"}]})",
-                 30.0);
-    EXPECT_NE(run.output.find("version"), std::string::npos) << run.output;
+                 200.0);
+    ASSERT_TRUE(run.report.is_object()) << run.output;
+    const auto reason = run.report.at("bots").at(0).at("ended_because").get<std::string>();
+    EXPECT_NE(reason.find("999"), std::string::npos) << reason;
+    EXPECT_NE(reason.find(std::to_string(net::kProtocolVersion)), std::string::npos) << reason;
+    EXPECT_EQ(total(run, "joined"), 0.0);
     server.stop();
 }
 
@@ -267,9 +274,9 @@ TEST(Arena, GarbageIsCountedAndTheGameGoesOn) {
         }
         transport->send(*to, datagram);
     }
-    const BotRun run =
-        run_bots(server.address(), {"--bots", "2", "--seconds", "5", "--pilot", "chaser"},
-                 R"({"expect": [{"what": "joined", "at_least": 2}]})", 30.0);
+    const BotRun run = run_bots(
+        server.address(), {"--bots", "2", "--seconds", "30", "--pilot", "chaser"},
+        R"({"until": {"snapshots": 200}, "expect": [{"what": "joined", "at_least": 2}]})", 200.0);
     EXPECT_EQ(run.exit_code, 0) << run.output;
     const nlohmann::json report = server.stop();
     int drops = 0;

@@ -22,7 +22,7 @@ struct Outcome {
 
 Outcome run(const std::string& program, const std::vector<std::string>& arguments) {
     harness::Process process(program, arguments);
-    const int exit_code = process.wait(30.0);
+    const int exit_code = process.wait(120.0);
     return {exit_code, process.output()};
 }
 
