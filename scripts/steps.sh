@@ -32,7 +32,7 @@ on_exit=()  # functions to call once the children have ended
 # start_child COMMAND...: runs it in a process group of its own; the group's id is in $child. Whatever
 # becomes of this script, even a kill -9, the command is told to end.
 start_child() {
-    setsid setpriv --pdeathsig TERM "$@" </dev/null &
+    setsid setpriv --pdeathsig TERM "$@" </dev/null 8>&- &
     child=$!
     children+=("$child")
 }
@@ -55,7 +55,7 @@ stop_child() {
 leave() {
     local pid action
     trap '' INT TERM HUP
-    for pid in "${children[@]}"; do stop_child "$pid" 5; done
+    for pid in "${children[@]}"; do stop_child "$pid" 20; done
     for action in "${on_exit[@]}"; do "$action"; done
 }
 trap leave EXIT
