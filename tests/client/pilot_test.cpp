@@ -1,6 +1,9 @@
 // Pilots play in a world without a network, as late as over one.
 #include "client/bot/pilot.h"
 
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "client/bot/shopping.h"
@@ -120,6 +123,33 @@ TEST(Chaser, clears_a_platform_of_several_balls) {
         EXPECT_EQ(world.balls_left(), 0U);
         EXPECT_TRUE(world.pilot_is_on());
     }
+}
+
+TEST(Chaser, goes_round_behind_a_ball_before_it_hits_it) {
+    for (const double angle : {0.0, 0.7, 2.0, 4.0}) {
+        SCOPED_TRACE(angle);
+        const Vec2d outwards(std::cos(angle), std::sin(angle));
+        Rng rng(1);
+        PilotedWorld world(physics::Disc{10.0}, {at(outwards * 8.0), at(outwards * 6.0)},
+                           kLagTicks);
+        const auto chaser = make_pilot("chaser");
+        Vec2d struck_mps = Vec2d::Zero();
+        while (world.seconds() < 10.0 && struck_mps.isZero()) {
+            world.tick(*chaser, rng);
+            if (world.balls_left() > 0) struck_mps = world.view().balls.back().velocity_mps;
+        }
+        EXPECT_GT(struck_mps.dot(outwards), 0.0);
+    }
+}
+
+TEST(Collector, finds_its_way_round_a_hole) {
+    Rng rng(1);
+    PilotedWorld world(physics::Ring{5.0, 10.0}, {at({7.5, 0.0})}, kLagTicks);
+    world.add_coin({-6.5, 0.0});
+    const auto collector = make_pilot("collector");
+    while (world.seconds() < 12.0 && world.coins_left() > 0) world.tick(*collector, rng);
+    EXPECT_EQ(world.coins_left(), 0U);
+    EXPECT_TRUE(world.pilot_is_on());
 }
 
 TEST(Collector, picks_every_coin_up) {

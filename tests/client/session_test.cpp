@@ -148,6 +148,7 @@ TEST(Session, sends_one_input_for_each_tick_however_rarely_it_is_updated) {
         table.session->update(table.now_s);
     }
     EXPECT_NEAR(static_cast<double>(table.session->stats().inputs_sent - before), 120.0, 2.0);
+    EXPECT_EQ(table.session->stats().inputs_given_up, 0U);
     EXPECT_EQ(table.session->stats().inputs_skipped, 0U);
 }
 
