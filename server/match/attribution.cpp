@@ -158,6 +158,11 @@ std::vector<Attribution::Share> Attribution::credit(Actor victim, std::uint32_t 
     return shares;
 }
 
+bool came_at(const physics::Vec2d& actor_velocity_mps, const physics::Vec2d& victim_velocity_mps,
+             const physics::Vec2d& towards_victim) {
+    return actor_velocity_mps.dot(towards_victim) > -victim_velocity_mps.dot(towards_victim);
+}
+
 std::vector<int> split_coins(int coins, const std::vector<Attribution::Share>& shares) {
     assert(coins >= 0);
     if (shares.empty()) return {};

@@ -37,6 +37,8 @@
 #include <map>
 #include <vector>
 
+#include "common/physics/scene.h"
+
 namespace fts::server {
 
 // A player through all of the player's balls, or one AI ball.
@@ -117,6 +119,11 @@ class Attribution {
     std::uint64_t next_order_ = 1;
     std::uint64_t forgotten_early_ = 0;
 };
+
+// Rule 6: whether the actor did more than half of the approach. `towards_victim` is the unit line
+// of centres from the actor to the victim; velocities are those before the hit.
+bool came_at(const physics::Vec2d& actor_velocity_mps, const physics::Vec2d& victim_velocity_mps,
+             const physics::Vec2d& towards_victim);
 
 // Whole coins by largest remainder: adds up to `coins` exactly; equal remainders favour the earlier
 // share.

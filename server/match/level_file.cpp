@@ -30,8 +30,10 @@ class FirstError : public google::protobuf::io::ErrorCollector {
     void AddError(int line, google::protobuf::io::ColumnNumber column,
                   const std::string& message) override {
         if (!text_.empty()) return;
-        if (line >= 0) text_ = ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1);
-        text_ += ": " + message;
+        std::ostringstream out;
+        if (line >= 0) out << ':' << line + 1 << ':' << column + 1;
+        out << ": " << message;
+        text_ = out.str();
     }
     const std::string& text() const { return text_; }
 

@@ -61,17 +61,16 @@ void Match::Impl::record_contacts() {
         if (!contact.b) continue;
         const std::uint16_t a = ball_of_slot[contact.a.index];
         const std::uint16_t b = ball_of_slot[contact.b->index];
-        // The normal points from b to a: b comes at a with a positive speed along it.
-        const double speed_of_a = -contact.velocity_a_before_mps.dot(contact.normal);
-        const double speed_of_b = contact.velocity_b_before_mps.dot(contact.normal);
+        const Vec2d& velocity_a = contact.velocity_a_before_mps;
+        const Vec2d& velocity_b = contact.velocity_b_before_mps;
         const auto full_momentum_ns = [this](std::uint16_t id) {
             const game::BallStats& stats = balls.at(id).stats;
             return stats.mass_kg * stats.top_speed_mps;
         };
         attribution.record({actor_of(a), actor_of(b), now, contact.impulse_ns, full_momentum_ns(a),
-                            speed_of_b > speed_of_a});
+                            came_at(velocity_b, velocity_a, contact.normal)});
         attribution.record({actor_of(b), actor_of(a), now, contact.impulse_ns, full_momentum_ns(b),
-                            speed_of_a > speed_of_b});
+                            came_at(velocity_a, velocity_b, -contact.normal)});
 
         const double impulse_steps = std::round(contact.impulse_ns / replication::kMassStepKg);
         hits.add({.tick = now,

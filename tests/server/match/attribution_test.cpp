@@ -218,6 +218,17 @@ TEST_F(AttributionTest, shares_always_add_up_to_one) {
     }
 }
 
+TEST(CameAt, is_whoever_did_more_of_the_approach) {
+    using physics::Vec2d;
+    const Vec2d right(1.0, 0.0);  // from the actor to the victim
+    EXPECT_TRUE(came_at({3.0, 9.0}, {0.0, 0.0}, right));
+    EXPECT_FALSE(came_at({0.0, 0.0}, {-3.0, 0.0}, right));
+    EXPECT_TRUE(came_at({3.0, 0.0}, {-2.0, 0.0}, right));
+    EXPECT_FALSE(came_at({2.0, 0.0}, {-3.0, 0.0}, right));
+    EXPECT_TRUE(came_at({3.0, 0.0}, {2.0, 0.0}, right));     // runs after it
+    EXPECT_FALSE(came_at({-2.0, 0.0}, {-3.0, 0.0}, right));  // is run after
+}
+
 TEST(SplitCoins, uses_the_largest_remainder) {
     const std::vector<Attribution::Share> seventy_thirty{{kAnna, 0.7, false}, {kBert, 0.3, true}};
     EXPECT_EQ(split_coins(4, seventy_thirty), (std::vector<int>{3, 1}));

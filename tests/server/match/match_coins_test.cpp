@@ -57,6 +57,26 @@ TEST(MatchCoins, a_knock_off_pays_what_the_level_is_worth_to_whom_it_belongs) {
     EXPECT_EQ(bench.match.totals().ai_knock_offs, 1u);
 }
 
+TEST(MatchCoins, running_into_one_ball_and_then_another_does_not_halve_the_pay) {
+    int in_full = 0, knock_offs = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        MatchBench bench({quiet_level(1, physics::Disc{5.0}, 4)}, seed);
+        const PlayerId player = bench.join(1);
+        bench.tick_until(Phase::kPlaying);
+        while (bench.match.phase() == Phase::kPlaying) {
+            bench.match.set_input(player, ram(bench.match.snapshot(), player, Prey::kAi));
+            bench.tick();
+            for (const auto& news : bench.said<KnockOff>()) {
+                if (news.shares.empty()) continue;
+                ++knock_offs;
+                in_full += news.shares[0].coins == game::knock_off_coins(1);
+            }
+        }
+    }
+    EXPECT_GE(knock_offs, 20);
+    EXPECT_GT(in_full, knock_offs * 9 / 10) << "only balls that came at the player take a share";
+}
+
 TEST(MatchCoins, the_campaign_begins_again_after_its_last_level) {
     MatchBench bench({quiet_level(1, physics::Disc{6.0})});
     const PlayerId player = bench.join(1);

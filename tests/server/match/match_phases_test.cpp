@@ -87,6 +87,19 @@ TEST(Match, refuses_players_beyond_its_room_and_never_reuses_an_id) {
     EXPECT_GT(bench.join(3), second);
 }
 
+TEST(Match, keeps_the_score_of_a_player_who_comes_back) {
+    MatchBench bench(two_levels());
+    const PlayerId player = bench.join(1);
+    bench.join(2);
+    bench.match.set_input(player, kEast);
+    while (bench.score_of(player).falls == 0) bench.tick();
+    bench.match.leave(player);
+    EXPECT_EQ(bench.match.scoreboard().size(), 2u);
+    const PlayerId again = bench.join(1);
+    EXPECT_EQ(bench.match.scoreboard().size(), 2u);
+    EXPECT_EQ(bench.score_of(again).falls, 1);
+}
+
 TEST(Match, respawns_a_fallen_player_after_two_seconds_while_lives_remain) {
     MatchBench bench(two_levels());
     const PlayerId player = bench.join(1);

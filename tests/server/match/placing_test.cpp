@@ -115,16 +115,26 @@ TEST(HitLog, counts_a_pair_once_a_tick_with_its_stronger_hit) {
 
 TEST(IdPool, lets_an_id_rest_before_it_is_used_again) {
     IdPool pool(600);
+    const auto first = pool.take(10);
+    ASSERT_TRUE(first.has_value());
+    pool.give_back(*first, 20);
     std::set<std::uint16_t> used;
-    for (int i = 0; i < 65535; ++i) {
-        const auto id = pool.take(10);
+    for (int i = 1; i < 65535; ++i) {
+        const auto id = pool.take(620);
         ASSERT_TRUE(id.has_value());
         EXPECT_TRUE(used.insert(*id).second);
     }
-    EXPECT_FALSE(pool.take(10).has_value());
+    EXPECT_FALSE(used.contains(*first));
+    EXPECT_EQ(pool.take(621), first);
+    EXPECT_FALSE(pool.take(622).has_value());
+}
+
+TEST(IdPool, gives_the_longest_rested_id_rather_than_none) {
+    IdPool pool(600);
+    for (int i = 0; i < 65535; ++i) pool.take(10);
     pool.give_back(77, 20);
-    EXPECT_FALSE(pool.take(620).has_value());
-    EXPECT_EQ(pool.take(621), std::uint16_t{77});
+    pool.give_back(11, 21);
+    EXPECT_EQ(pool.take(22), std::uint16_t{77});
 }
 
 }  // namespace
