@@ -1,6 +1,7 @@
 #include "client/sdl/app.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "client/core/settings.h"
 #include "client/sdl/input_devices.h"
 #include "client/sdl/local_server.h"
+#include "client/sdl/lookup.h"
 #include "client/sdl/screens/match.h"
 #include "client/sdl/screens/menu.h"
 #include "client/sdl/screens/notice.h"
@@ -59,7 +61,7 @@ const char* title_for(net::DisconnectReason reason) {
 }  // namespace
 
 struct App::Impl {
-    enum class Stage { kMenu, kHosting, kSession, kEnded };
+    enum class Stage { kMenu, kLookingUp, kHosting, kSession, kEnded };
     struct Ending {
         std::string title, words;
     };
@@ -77,6 +79,7 @@ struct App::Impl {
     int run();
     void poll_events();
     void update(double now_s);
+    void update_lookup();
     void update_hosting();
     void update_session(double now_s);
     void draw(Canvas& canvas);
@@ -91,6 +94,10 @@ struct App::Impl {
     void remember();
     void end(const std::string& title, const std::string& words) {
         ending = {title, words};
+        if (!words.empty()) {
+            ending.words[0] =
+                static_cast<char>(std::toupper(static_cast<unsigned char>(ending.words[0])));
+        }
         stage = Stage::kEnded;
     }
 
@@ -111,6 +118,7 @@ struct App::Impl {
     std::optional<int> slot;  // picked in this frame
 
     std::string server;  // as shown
+    std::optional<Lookup> lookup;
     std::optional<net::Address> address;
     bool hosted = false;  // the session plays on the local server
     bool pinned = false;
@@ -124,6 +132,7 @@ struct App::Impl {
 void App::Impl::remember() {
     settings.player_name = menu.name;
     settings.last_server = menu.address;
+    menu.problem.clear();
     std::string error;
     if (!client::save_settings(settings, folder.settings_path(), error)) menu.problem = error;
 }
@@ -132,13 +141,19 @@ void App::Impl::join() {
     remember();
     hosted = false;
     server = menu.address.empty() ? kDefaultServer : menu.address;
-    const net::Resolved resolved = client::resolve_server(server);
-    if (!resolved.address) {
-        menu.problem = resolved.error;
-        end("That address leads nowhere", resolved.error);
+    lookup.emplace(server);
+    stage = Stage::kLookingUp;
+}
+
+void App::Impl::update_lookup() {
+    const std::optional<net::Resolved> resolved = lookup->poll();
+    if (!resolved) return;
+    lookup.reset();
+    if (!resolved->address) {
+        end("That address leads nowhere", resolved->error);
         return;
     }
-    address = resolved.address;
+    address = resolved->address;
     connect(server, known_servers.find(*address));
 }
 
@@ -264,6 +279,7 @@ void App::Impl::update_session(double now_s) {
 void App::Impl::update(double now_s) {
     const Actions actions = devices->take_actions();
     slot.reset();
+    if (stage == Stage::kLookingUp) update_lookup();
     if (stage == Stage::kHosting) update_hosting();
     if (stage == Stage::kSession) {
         update_session(now_s);
@@ -312,6 +328,7 @@ void App::Impl::draw(Canvas& canvas) {
                     break;
             }
             break;
+        case Stage::kLookingUp:
         case Stage::kHosting:
             if (draw_connecting(canvas, server, false)) stage = Stage::kMenu;
             break;

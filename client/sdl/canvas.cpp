@@ -138,7 +138,7 @@ void Canvas::arrow(ImVec2 tail, ImVec2 tip, Colour colour, float thickness) cons
         return;
     }
     const float ux = dx / length, uy = dy / length;
-    const float depth = std::min(head, length);
+    const float depth = std::min(head, length * 0.6F);
     const ImVec2 neck{tip.x - ux * depth, tip.y - uy * depth};
     const float wing = depth * 0.5F;
     list->AddLine(tail, {neck.x + ux, neck.y + uy}, colour, thickness);

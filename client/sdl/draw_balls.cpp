@@ -8,8 +8,8 @@
 namespace fts::sdl {
 namespace {
 
-constexpr double kVelocityArrowS = 0.45;  // an arrow reaches where the ball would be by then
-constexpr double kMomentumArrowMPerNs = 0.25;
+constexpr double kVelocityArrowS = 0.6;  // an arrow reaches where the ball would be by then
+constexpr double kMomentumArrowMPerNs = 0.4;
 constexpr double kMinArrowSpeedMps = 0.05;
 constexpr float kSmallestRadius = 5;
 
@@ -79,7 +79,7 @@ void draw_arrows(const Canvas& canvas, const Camera& camera, const client::BallV
     if (arrows.momentum) {
         const physics::Vec2d reach = ball.velocity_mps * (ball.mass_kg * kMomentumArrowMPerNs);
         canvas.arrow(from, camera.to_screen(ball.position_m + reach), fade(palette::kGold, 0.9),
-                     canvas.px(4.5F));
+                     canvas.px(4));
     }
     if (arrows.velocity) {
         const physics::Vec2d reach = ball.velocity_mps * kVelocityArrowS;

@@ -94,42 +94,74 @@ std::int32_t to_fixed(float channel) {
     return static_cast<std::int32_t>(std::clamp(channel, 0.0F, 255.0F) * 65536.0F) + (1 << 15);
 }
 
-// Four channels of a shaded triangle, each a plane.
-class Shade {
+// A channel along one row, in steps.
+struct Ramp {
+    std::int32_t value, step;
+
+    Ramp(const Plane& plane, const Span& span)
+        : value(to_fixed(
+              plane.at(static_cast<float>(span.left) + 0.5F, static_cast<float>(span.y) + 0.5F))),
+          step(static_cast<std::int32_t>(plane.per_pixel() * 65536.0F)) {}
+    std::uint32_t next() {
+        const std::int32_t whole = value >> kFixed;
+        value += step;
+        return static_cast<std::uint32_t>(std::clamp(whole, 0, 255));
+    }
+};
+
+Plane channel_plane(const ImDrawVert& a, const ImDrawVert& b, const ImDrawVert& c,
+                    float inverse_area, unsigned shift) {
+    const auto channel = [shift](const ImDrawVert& vertex) {
+        return static_cast<float>((vertex.col >> shift) & 0xffU);
+    };
+    return {a, b, c, inverse_area, channel(a), channel(b), channel(c)};
+}
+
+// One hue that fades: glows, shadows and every anti-aliased edge.
+class Fading {
   public:
-    Shade(const ImDrawVert& a, const ImDrawVert& b, const ImDrawVert& c, float inverse_area)
-        : planes_{plane(a, b, c, inverse_area, 16), plane(a, b, c, inverse_area, 8),
-                  plane(a, b, c, inverse_area, 0), plane(a, b, c, inverse_area, 24)} {}
+    Fading(const ImDrawVert& a, const ImDrawVert& b, const ImDrawVert& c, float inverse_area)
+        : colour_(argb(a.col)), alpha_(channel_plane(a, b, c, inverse_area, 24)) {}
 
     void fill(std::uint32_t* row, const Span& span) const {
-        std::array<std::int32_t, 4> value{}, step{};
-        const float y = static_cast<float>(span.y) + 0.5F;
-        const float x = static_cast<float>(span.left) + 0.5F;
-        for (std::size_t i = 0; i < 4; ++i) {
-            value[i] = to_fixed(planes_[i].at(x, y));
-            step[i] = static_cast<std::int32_t>(planes_[i].per_pixel() * 65536.0F);
-        }
-        for (int pixel = span.left; pixel < span.right; ++pixel) {
-            std::array<std::uint32_t, 4> channel{};
-            for (std::size_t i = 0; i < 4; ++i) {
-                channel[i] = static_cast<std::uint32_t>(std::clamp(value[i] >> kFixed, 0, 255));
-                value[i] += step[i];
-            }
-            const std::uint32_t colour = (channel[2] << 16U) | (channel[1] << 8U) | channel[0];
-            row[pixel] = blend(row[pixel], colour, channel[3]);
+        Ramp alpha(alpha_, span);
+        for (int x = span.left; x < span.right; ++x) {
+            row[x] = blend(row[x], colour_, alpha.next());
         }
     }
 
   private:
-    static Plane plane(const ImDrawVert& a, const ImDrawVert& b, const ImDrawVert& c,
-                       float inverse_area, unsigned shift) {
-        const auto channel = [shift](const ImDrawVert& vertex) {
-            return static_cast<float>((vertex.col >> shift) & 0xffU);
+    std::uint32_t colour_;
+    Plane alpha_;
+};
+
+// All channels change.
+class Shade {
+  public:
+    Shade(const ImDrawVert& a, const ImDrawVert& b, const ImDrawVert& c, float inverse_area)
+        : red_(channel_plane(a, b, c, inverse_area, 0)),
+          green_(channel_plane(a, b, c, inverse_area, 8)),
+          blue_(channel_plane(a, b, c, inverse_area, 16)),
+          alpha_(channel_plane(a, b, c, inverse_area, 24)),
+          opaque_(((a.col & b.col & c.col) >> 24U) == 0xffU) {}
+
+    void fill(std::uint32_t* row, const Span& span) const {
+        Ramp red(red_, span), green(green_, span), blue(blue_, span), alpha(alpha_, span);
+        const auto colour = [&] {
+            return 0xff000000U | (red.next() << 16U) | (green.next() << 8U) | blue.next();
         };
-        return {a, b, c, inverse_area, channel(a), channel(b), channel(c)};
+        if (opaque_) {
+            for (int x = span.left; x < span.right; ++x) row[x] = colour();
+        } else {
+            for (int x = span.left; x < span.right; ++x) {
+                row[x] = blend(row[x], colour(), alpha.next());
+            }
+        }
     }
 
-    std::array<Plane, 4> planes_;  // blue, green, red, alpha
+  private:
+    Plane red_, green_, blue_, alpha_;
+    bool opaque_;
 };
 
 ImDrawVert moved(ImDrawVert vertex, const ImDrawData& data) {
@@ -261,6 +293,9 @@ void Rasteriser::draw_triangle(const ImDrawVert& a, const ImDrawVert& b, const I
         for_each_span(corners, clip, [&](const Span& span) {
             fill_span(row(span.y) + span.left, row(span.y) + span.right, colour);
         });
+    } else if (((a.col ^ b.col) & 0xffffffU) == 0 && ((a.col ^ c.col) & 0xffffffU) == 0) {
+        const Fading fading(a, b, c, inverse_area);
+        for_each_span(corners, clip, [&](const Span& span) { fading.fill(row(span.y), span); });
     } else {
         const Shade shade(a, b, c, inverse_area);
         for_each_span(corners, clip, [&](const Span& span) { shade.fill(row(span.y), span); });

@@ -11,7 +11,8 @@
 namespace fts::sdl {
 namespace {
 
-// Without a display to wait for; a frame more would only heat the room.
+// Smaller changes of the window's size than this stretch the fonts a little instead of making them
+// anew.
 constexpr float kSmallestRescale = 0.02F;
 constexpr int kMinWidth = 800, kMinHeight = 450;
 
@@ -20,9 +21,17 @@ bool is_software(SDL_Renderer* renderer) {
     return SDL_GetRendererInfo(renderer, &info) != 0 || (info.flags & SDL_RENDERER_SOFTWARE) != 0;
 }
 
+// SDL falls back on drivers that nobody can see, which is of use only to those who ask for it.
+bool nobody_can_see() {
+    if (SDL_getenv("SDL_VIDEODRIVER") != nullptr) return false;
+    const std::string driver = SDL_GetCurrentVideoDriver();
+    return driver == "offscreen" || driver == "dummy" || driver == "evdev";
+}
+
 std::string no_display_message() {
-    return std::string("There is no display to open a window on (") + SDL_GetError() +
-           "). Without one, run `./play --headless`.";
+    const std::string why = SDL_GetError();
+    return "There is no display to open a window on" + (why.empty() ? "" : " (" + why + ")") +
+           ". Without one, run `./play --headless`.";
 }
 
 }  // namespace
@@ -40,12 +49,17 @@ void apply_style() {
 }
 
 std::unique_ptr<Window> Window::open(const WindowConfig& config, std::string& error) {
-    // Without a window manager's help the name of the program is used.
     SDL_SetHint(SDL_HINT_APP_NAME, config.title.c_str());
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     if (SDL_Init(SDL_INIT_VIDEO) != 0) {
         error = no_display_message();
+        return nullptr;
+    }
+    if (nobody_can_see()) {
+        SDL_ClearError();
+        error = no_display_message();
+        SDL_Quit();
         return nullptr;
     }
     // A machine without gamepads, or without the right to see them, can still play.

@@ -38,12 +38,13 @@ double kinetic_energy_j(const Hit::Side& side, const physics::Vec2d& velocity_mp
     return 0.5 * side.mass_kg * velocity_mps.squaredNorm();
 }
 
+constexpr double kNearlyEqual = 0.005;  // of a mass ratio: nobody can tell
+
 std::string percent(double share) {
     return fixed(100.0 * share, 0) + " %";
 }
 
 std::string mass_clause(double ratio) {
-    constexpr double kNearlyEqual = 0.005;
     if (std::abs(ratio - 1.0) < kNearlyEqual) return "Equal masses: ";
     if (ratio > 1.0) return "You were " + fixed(ratio, 2) + "\xc3\x97 heavier: ";
     return "You were " + fixed(1.0 / ratio, 2) + "\xc3\x97 lighter: ";
@@ -160,6 +161,10 @@ std::string explain(const Hit& hit) {
     if (std::abs(own_mps) < kAtRest * std::abs(other_mps)) {
         return start + "you left with " + percent(taken) +
                " of its speed along the line of centres. You were the one being hit.";
+    }
+    if (std::abs(own_kg / other_kg - 1.0) < kNearlyEqual) {
+        return start + "you closed at " + fixed(closing_mps, 2) +
+               " m/s along the line of centres, and simply swapped your speeds along it.";
     }
     return start + "you closed at " + fixed(closing_mps, 2) +
            " m/s along the line of centres and parted at the same rate. Your speed along it "

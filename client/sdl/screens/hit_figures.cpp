@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "client/sdl/draw_balls.h"
 #include "client/sdl/screens/inspector.h"
@@ -68,53 +70,118 @@ void draw_path(const Canvas& canvas, const Frame& frame, const Hit::Side& side, 
     }
 }
 
-// Beyond `tip`, on the way from `tail`, but inside the box.
-void label_beyond(const Canvas& canvas, const Box& box, ImVec2 tail, ImVec2 tip, float gap,
-                  Colour colour, const std::string& text) {
-    const float dx = tip.x - tail.x, dy = tip.y - tail.y;
-    const float length = std::max(std::hypot(dx, dy), 1.0F);
-    const float half = canvas.text_width(TextStyle::kCaption, text) / 2;
-    ImVec2 at{tip.x + dx / length * (gap + half * std::abs(dx) / length),
-              tip.y + dy / length * gap};
-    at.x = std::clamp(at.x, box.min.x + half, std::max(box.max.x - half, box.min.x + half));
-    at.y = std::clamp(at.y, box.min.y + canvas.px(7), box.max.y - canvas.px(7));
-    label(canvas, at, colour, text);
+// Words that keep out of each other's way: each takes the first of its candidate places that is
+// free.
+class Labels {
+  public:
+    Labels(const Canvas& canvas, const Box& box) : canvas_(canvas), box_(box) {}
+
+    void avoid(const Box& box) { taken_.push_back(box); }
+    void place(const std::vector<ImVec2>& candidates, Colour colour, const std::string& text) {
+        const float half = canvas_.text_width(TextStyle::kCaption, text) / 2;
+        const float rise = canvas_.px(8);
+        Box best{};
+        double best_overlap = 1e12;
+        for (ImVec2 at : candidates) {
+            at.x =
+                std::clamp(at.x, box_.min.x + half, std::max(box_.max.x - half, box_.min.x + half));
+            at.y = std::clamp(at.y, box_.min.y + rise, box_.max.y - rise);
+            const Box box{{at.x - half, at.y - rise}, {at.x + half, at.y + rise}};
+            double overlap = 0.0;
+            for (const Box& other : taken_) overlap += shared_area(box, other);
+            if (overlap < best_overlap) {
+                best_overlap = overlap;
+                best = box;
+            }
+        }
+        taken_.push_back(best);
+        label(canvas_, best.centre(), colour, text);
+    }
+    // Places around `centre`, the first one in the direction (dx, dy), right behind a radius.
+    std::vector<ImVec2> around(ImVec2 centre, float radius, float dx, float dy,
+                               const std::string& text) const {
+        const float half = canvas_.text_width(TextStyle::kCaption, text) / 2;
+        const float start = std::atan2(dy, dx);
+        std::vector<ImVec2> places;
+        for (const float turn : {0.0F, 0.6F, -0.6F, 1.2F, -1.2F, 1.8F, -1.8F, 2.5F, -2.5F}) {
+            const float c = std::cos(start + turn), s = std::sin(start + turn);
+            const float gap = radius + canvas_.px(7);
+            places.push_back({centre.x + c * (gap + half), centre.y + s * (gap + canvas_.px(7))});
+        }
+        return places;
+    }
+
+  private:
+    static double shared_area(const Box& a, const Box& b) {
+        const float width = std::min(a.max.x, b.max.x) - std::max(a.min.x, b.min.x);
+        const float height = std::min(a.max.y, b.max.y) - std::max(a.min.y, b.min.y);
+        return width > 0 && height > 0 ? static_cast<double>(width) * static_cast<double>(height)
+                                       : 0.0;
+    }
+
+    const Canvas& canvas_;
+    Box box_;
+    std::vector<Box> taken_;
+};
+
+// One side of figure 1 in pixels.
+struct Track {
+    ImVec2 origin, contact, tip;
+    float radius;
+    bool came, leaves;  // moved visibly before, after
+};
+
+Track track_of(const Frame& frame, const Hit::Side& side, double span_s) {
+    const double visible_m = side.radius_m * 0.25;
+    return {frame.at(side.position_m - side.velocity_before_mps * span_s),
+            frame.at(side.position_m),
+            frame.at(side.position_m + side.velocity_after_mps * span_s),
+            frame.px(side.radius_m),
+            side.velocity_before_mps.norm() * span_s > visible_m,
+            side.velocity_after_mps.norm() * span_s > visible_m};
 }
 
-void draw_velocities(const Canvas& canvas, const Frame& frame, const Box& box,
-                     const Hit::Side& side, Colour colour, double span_s) {
-    const double before_mps = side.velocity_before_mps.norm();
-    const double after_mps = side.velocity_after_mps.norm();
-    const ImVec2 contact = frame.at(side.position_m);
-    const Vec2d from_m = side.position_m - side.velocity_before_mps * span_s;
-    if (before_mps * span_s > side.radius_m * 0.25) {
-        const Vec2d half_way_m = from_m + side.velocity_before_mps * (span_s * 0.62);
-        const ImVec2 tail = frame.at(from_m);
-        canvas.arrow(tail, frame.at(half_way_m), fade(palette::kText, 0.5), canvas.px(2));
-        label_beyond(canvas, box, contact, tail, frame.px(side.radius_m) + canvas.px(12),
-                     palette::kTextQuiet, fixed(before_mps, 2) + " m/s");
+void draw_arrows(const Canvas& canvas, const Track& track) {
+    if (track.came) {
+        const ImVec2 way{track.contact.x - track.origin.x, track.contact.y - track.origin.y};
+        canvas.arrow(track.origin, {track.origin.x + way.x * 0.62F, track.origin.y + way.y * 0.62F},
+                     fade(palette::kText, 0.5), canvas.px(2));
     }
-    const ImVec2 tip = frame.at(side.position_m + side.velocity_after_mps * span_s);
-    canvas.arrow(contact, tip, palette::kText, canvas.px(3));
-    if (after_mps * span_s > side.radius_m * 0.25) {
-        label_beyond(canvas, box, contact, tip, canvas.px(12), mix(colour, palette::kText, 0.5),
-                     fixed(after_mps, 2) + " m/s");
+    canvas.arrow(track.contact, track.tip, palette::kText, canvas.px(3));
+}
+
+Box around_point(ImVec2 at, float reach) {
+    return {{at.x - reach, at.y - reach}, {at.x + reach, at.y + reach}};
+}
+
+void reserve(const Track& track, Labels& labels) {
+    labels.avoid(around_point(track.contact, track.radius * 0.9F));
+    if (track.came) labels.avoid(around_point(track.origin, track.radius * 0.7F));
+    for (const float part : {0.4F, 0.6F, 0.8F, 1.0F}) {
+        labels.avoid(around_point({track.contact.x + (track.tip.x - track.contact.x) * part,
+                                   track.contact.y + (track.tip.y - track.contact.y) * part},
+                                  4.0F));
     }
 }
 
-// Beside the ball, across the line of centres, on the side that it does not leave by.
-void draw_mass(const Canvas& canvas, const Frame& frame, const Hit::Side& side,
-               const Vec2d& along) {
-    Vec2d across(-along.y(), along.x());
-    const Vec2d travel = side.velocity_after_mps - side.velocity_before_mps * 0.5;
-    if (across.dot(travel) > 0.0) across = -across;
-    const ImVec2 centre = frame.at(side.position_m);
-    const std::string text = mass_text(side.mass_kg);
-    const float half = canvas.text_width(TextStyle::kCaption, text) / 2;
-    const auto x = static_cast<float>(across.x()), y = static_cast<float>(across.y());
-    const float gap = frame.px(side.radius_m) + canvas.px(9);
-    label(canvas, {centre.x + x * (gap + half * std::abs(x)), centre.y - y * (gap + canvas.px(5))},
-          palette::kText, text);
+void draw_words(const Canvas& canvas, const Track& track, const Hit::Side& side, Colour colour,
+                Labels& labels) {
+    const Colour ink = mix(colour, palette::kText, 0.5);
+    if (track.leaves) {
+        const std::string after = fixed(side.velocity_after_mps.norm(), 2) + " m/s";
+        labels.place(labels.around(track.tip, 0.0F, track.tip.x - track.contact.x,
+                                   track.tip.y - track.contact.y, after),
+                     ink, after);
+    }
+    if (track.came) {
+        const std::string before = fixed(side.velocity_before_mps.norm(), 2) + " m/s";
+        labels.place(labels.around(track.origin, track.radius, track.origin.x - track.contact.x,
+                                   track.origin.y - track.contact.y, before),
+                     palette::kTextQuiet, before);
+    }
+    const std::string mass = mass_text(side.mass_kg);
+    labels.place(labels.around(track.contact, track.radius, canvas.px(0), canvas.px(1), mass),
+                 palette::kText, mass);
 }
 
 // One ball of figure 2 with its velocity split along and across the line of centres.
@@ -208,10 +275,15 @@ void draw_figure_in_plane(const Canvas& canvas, const Box& box, const Hit& hit,
     const Vec2d far_m = hit.other.position_m + along * (hit.other.radius_m + 0.45 * touching_m);
     canvas.dashed_line(frame.at(near_m), frame.at(far_m), fade(palette::kAccent, 0.8),
                        canvas.px(1.3F), canvas.px(5));
-    draw_mass(canvas, frame, hit.own, along);
-    draw_mass(canvas, frame, hit.other, along);
-    draw_velocities(canvas, frame, box, hit.own, colours.own, span_s);
-    draw_velocities(canvas, frame, box, hit.other, colours.other, span_s);
+    const Track own = track_of(frame, hit.own, span_s);
+    const Track other = track_of(frame, hit.other, span_s);
+    Labels labels(canvas, box);
+    for (const Track& track : {own, other}) {
+        draw_arrows(canvas, track);
+        reserve(track, labels);
+    }
+    draw_words(canvas, own, hit.own, colours.own, labels);
+    draw_words(canvas, other, hit.other, colours.other, labels);
 }
 
 void draw_figure_turned(const Canvas& canvas, const Box& box, const Hit& hit,
