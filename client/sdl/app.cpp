@@ -25,7 +25,6 @@
 namespace fts::sdl {
 namespace {
 
-constexpr double kFrameS = 1.0 / 60.0;  // where nothing waits for the display
 constexpr const char* kDefaultServer = "localhost";
 constexpr int kExitFailure = 1;
 
@@ -367,8 +366,8 @@ int App::Impl::run() {
             return kExitFailure;
         }
         if (shoot) quit = true;
-        const double spare_s = kFrameS - (monotonic_s() - now_s);
-        if (!window->waits_for_display() && spare_s > 0.0) {
+        const double spare_s = window->shortest_frame_s() - (monotonic_s() - now_s);
+        if (spare_s > 0.0) {
             std::this_thread::sleep_for(std::chrono::duration<double>(spare_s));
         }
     }

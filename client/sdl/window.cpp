@@ -65,10 +65,18 @@ std::unique_ptr<Window> Window::open(const WindowConfig& config, std::string& er
     // A machine without gamepads, or without the right to see them, can still play.
     SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER);
     Uint32 flags = SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
-    if (config.fullscreen) flags |= SDL_WINDOW_FULLSCREEN_DESKTOP;
-    SDL_Window* window =
-        SDL_CreateWindow(config.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
-                         config.width_px, config.height_px, flags);
+    int width = config.width_px, height = config.height_px;
+    SDL_DisplayMode desktop{};
+    if (config.fullscreen) {
+        flags |= SDL_WINDOW_FULLSCREEN_DESKTOP;
+        // Where no window manager makes it as large as the screen, it must start so.
+        if (SDL_GetDesktopDisplayMode(0, &desktop) == 0) {
+            width = desktop.w;
+            height = desktop.h;
+        }
+    }
+    SDL_Window* window = SDL_CreateWindow(config.title.c_str(), SDL_WINDOWPOS_CENTERED,
+                                          SDL_WINDOWPOS_CENTERED, width, height, flags);
     if (window == nullptr) {
         error = no_display_message();
         SDL_Quit();
@@ -147,6 +155,15 @@ void Window::fit_type_scale() {
     } else {
         rasteriser_.upload_fonts();
     }
+}
+
+double Window::shortest_frame_s() const {
+    constexpr double kUsualHz = 60.0;
+    if (!waits_for_display_) return 1.0 / kUsualHz;
+    SDL_DisplayMode mode{};
+    const bool known = SDL_GetWindowDisplayMode(window_, &mode) == 0 && mode.refresh_rate > 0;
+    constexpr double kSlack = 1.1;
+    return 1.0 / (kSlack * (known ? mode.refresh_rate : kUsualHz));
 }
 
 Canvas Window::begin_frame(double time_s) {

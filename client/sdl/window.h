@@ -37,9 +37,9 @@ class Window {
     // it to that file (PNG); false with `error` set when that fails.
     bool end_frame(const std::string& screenshot_path, std::string& error);
 
-    // True when presenting waits for the display, so that no frame rate cap is needed.
-    bool waits_for_display() const { return waits_for_display_; }
-    bool is_accelerated() const { return renderer_ != nullptr; }
+    // No frame need be shorter. Where presenting waits for the display this is a little less than
+    // its refresh takes, and only catches displays that do not keep their word.
+    double shortest_frame_s() const;
 
   private:
     explicit Window(SDL_Window* window);
