@@ -96,6 +96,7 @@ void Server::deliver(Arena& arena) {
         if (!send_encoded(id, bytes)) broken.emplace_back(id, "cannot keep up with the game");
     };
     for (const Outgoing& outgoing : arena.match.drain_outgoing()) {
+        note_level(arena, outgoing);
         const std::vector<std::uint8_t> bytes = replication::encode(outgoing.message);
         if (!outgoing.to) {
             for (const auto& [player, connection] : arena.players) pass_on(connection, bytes);
@@ -106,6 +107,14 @@ void Server::deliver(Arena& arena) {
     }
     // What is reliable must not have gaps: who cannot take a message is told to come again.
     for (const auto& [id, detail] : broken) kick(id, net::DisconnectReason::kKicked, detail);
+}
+
+void Server::note_level(const Arena& arena, const Outgoing& outgoing) {
+    const auto* level = std::get_if<replication::LevelStarted>(&outgoing.message);
+    if (!level || outgoing.to) return;
+    log_(LogLevel::kInfo, "arena " + std::to_string(arena.number) + " begins level " +
+                              std::to_string(level->number) + " (" + level->name +
+                              "), players: " + std::to_string(arena.players.size()));
 }
 
 void Server::publish_snapshot(Arena& arena) {

@@ -88,7 +88,9 @@ class Server {
 
   private:
     struct Arena {
-        Arena(const MatchConfig& config, Ledger& ledger) : match(config, ledger) {}
+        Arena(const MatchConfig& config, Ledger& ledger)
+            : number(config.arena), match(config, ledger) {}
+        const int number;
         Match match;
         SnapshotFeed feed;
         std::map<PlayerId, net::ConnectionId> players;
@@ -106,6 +108,7 @@ class Server {
     void play_one_tick();
     void apply_inputs(Arena& arena);
     void deliver(Arena& arena);
+    void note_level(const Arena& arena, const Outgoing& outgoing);
     void publish_snapshot(Arena& arena);
     void send_snapshot(Arena& arena, const Session& session);
     void settle_ledger(double now_s);

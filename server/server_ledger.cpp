@@ -47,6 +47,8 @@ void Server::answer_purchases() {
         if (session->is_playing()) {
             arenas_[static_cast<std::size_t>(session->arena)]->match.upgrades_changed(done.player);
         }
+        log_(LogLevel::kDebug, session->who() + "'s purchase is written down, request " +
+                                   std::to_string(done.result.request_id));
         answer(done.connection, done.result.request_id, done.result.outcome);
     }
 }

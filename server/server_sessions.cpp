@@ -23,6 +23,7 @@ void Server::on(const net::Connected& event, double now_s) {
     session.key = event.peer;
     session.address = event.address;
     session.enter(Session::State::kGreeting, now_s);
+    log_(LogLevel::kDebug, session.who() + " connected");
 }
 
 void Server::on(const net::Disconnected& event, double) {

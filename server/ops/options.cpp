@@ -98,6 +98,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
         return {std::nullopt, app.exit(error) == 0 ? 0 : kExitUsage};
     }
     options.name = plain_line(options.name, kMaxServerNameBytes);
+    if (options.name.empty()) options.name = Options{}.name;
     return {std::move(options), 0};
 }
 
