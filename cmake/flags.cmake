@@ -23,6 +23,9 @@ target_compile_options(
               -Wundef
               -Werror)
 
+# SDL's own flags define it; where it is the same for all, all can share precompiled headers.
+target_compile_definitions(fts_flags INTERFACE _REENTRANT)
+
 # Names the root so that every include is written from it.
 target_include_directories(fts_flags INTERFACE ${PROJECT_SOURCE_DIR})
 

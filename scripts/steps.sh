@@ -89,6 +89,11 @@ show_progress() {
     printf '\r%-36s %16s\r%-36s ' "$title" '' "$title"
 }
 
+# end_of LOG: its last lines, without those that only tell what went well.
+end_of() {
+    grep -vE '^\[[0-9]+/[0-9]+\] |^ *(Start +[0-9]+:|[0-9]+/[0-9]+ Test .* Passed )' "$1" | tail -n "${2:-40}" || true
+}
+
 # step TITLE LOG COMMAND...: one line: the title, then `ok` or `FAILED` and how long it took. Output goes
 # to the log. $step_s is the duration; the status is the command's.
 step() {
