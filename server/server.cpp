@@ -204,10 +204,11 @@ void Server::shut_down(double now_s, std::string_view goodbye) {
     admitting_ = false;
     for (auto& [id, session] : sessions_) leave_match(session);
     for (int arena = 0; arena < config_.arenas; ++arena) ledger_.sweep_field(arena);
-    hand_over_transactions();
+    journal_.commit(ledger_.drain_transactions(), std::exchange(renames_, {}));
     unwritten_ = journal_.finish() + ledger_.pending_count();
     committed_up_to_ = journal_.drain().committed_up_to;
     answer_purchases();
+    listener_.update(now_s);  // the answers leave before the goodbye
     listener_.close(goodbye);
     listener_.update(now_s);
     sessions_.clear();
@@ -251,6 +252,10 @@ bool Server::send(net::ConnectionId id, const replication::ServerMessage& messag
 }
 
 bool Server::send_encoded(net::ConnectionId id, std::span<const std::uint8_t> bytes) {
+    if (bytes.empty()) {  // nothing that the other end would take (wire.h)
+        count("message_not_encodable");
+        return true;
+    }
     if (listener_.send_reliable(id, bytes)) return true;
     count("message_not_sent");
     return false;

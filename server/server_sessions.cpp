@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cassert>
 #include <variant>
 
@@ -130,6 +131,10 @@ void Server::handle(Session& session, const replication::BuyRequest& request, do
     switch (purchase.outcome) {
         case BuyOutcome::kBought:
         case BuyOutcome::kAlreadyBought: {
+            const auto is_the_same = [&](const Answer& due) {
+                return due.connection == session.id && due.result.request_id == request.request_id;
+            };
+            if (std::ranges::any_of(answers_, is_the_same)) return;  // asked again too soon
             const Outcome outcome = purchase.outcome == BuyOutcome::kBought
                                         ? Outcome::kBought
                                         : Outcome::kAlreadyBought;

@@ -208,6 +208,9 @@ void App::Impl::update_hosting() {
             address = resolved.address;
             // Started by us just now: whatever key it has is the right one.
             connect(name, std::nullopt);
+            match.hud.chat.push_back({"Others join at this machine's address, port " +
+                                          std::to_string(local_server->port()) + ".",
+                                      palette::kAccent, updated_s});
             break;
         }
         case LocalServer::State::kFailed: {

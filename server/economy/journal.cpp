@@ -37,7 +37,7 @@ void Journal::commit(std::vector<Transaction> transactions, std::vector<Rename> 
     if (transactions.empty() && renames.empty()) return;
     {
         const std::lock_guard lock(mutex_);
-        assert(unwritten_ < config_.max_unwritten && !give_up_at_);
+        assert(!give_up_at_);
         unwritten_ += transactions.size();
         jobs_.push_back(Batch{std::move(transactions), std::move(renames)});
     }

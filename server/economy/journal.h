@@ -40,7 +40,8 @@ class Journal {
 
     // False while `max_unwritten` transactions wait to be written.
     bool has_room() const;
-    // Expects `has_room`. Sequences ascend from one call to the next.
+    // Sequences ascend from one call to the next. To keep to `has_room` is up to the caller, except
+    // at the very end, when everything must be handed over.
     void commit(std::vector<Transaction> transactions, std::vector<Rename> renames);
     // The ticket that its `Loaded` will carry; empty when too many loads are waiting.
     std::optional<std::uint64_t> load(const PlayerKey& key);

@@ -405,9 +405,9 @@ TEST(Pause, leaves_quits_or_goes_back) {
             },
             0, [&] { window.click(at); });
     };
-    EXPECT_EQ(run({640, 324}), 3);
-    EXPECT_EQ(run({640, 384}), 1);
-    EXPECT_EQ(run({640, 444}), 2);
+    EXPECT_EQ(run({640, 330}), 3);
+    EXPECT_EQ(run({640, 390}), 1);
+    EXPECT_EQ(run({640, 450}), 2);
 }
 
 }  // namespace

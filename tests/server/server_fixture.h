@@ -77,9 +77,10 @@ class ServerTest : public ::testing::Test {
     }
     // Leaves the journal's thread time to do its part. False when it has not come about in time.
     bool run_until(const std::function<bool()>& condition, double patience_s = 8.0) {
+        const double hurry_until_s = now_s + patience_s / 2;
         for (const double end_s = now_s + patience_s; !condition() && now_s < end_s;) {
             step();
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            std::this_thread::sleep_for(std::chrono::milliseconds(now_s < hurry_until_s ? 1 : 20));
         }
         return condition();
     }

@@ -133,8 +133,16 @@ TEST_F(Shop, pauses_the_game_when_too_much_waits_to_be_written) {
     ASSERT_TRUE(run_until_shop());
     disk.hold_commits();
     ada.say(replication::ReadyRequest{});  // the next level puts coins on the field again
-    ASSERT_TRUE(run_until([&] { return !ada.heard<replication::ChatLine>().empty(); }));
-    EXPECT_THAT(ada.last<replication::ChatLine>()->text, HasSubstr("paused"));
+    const auto stands_still = [&] {
+        const std::uint64_t before = server->report().ticks;
+        for (int i = 0; i < 10; ++i) step();
+        return server->report().ticks == before;
+    };
+    ASSERT_TRUE(run_until(stands_still));
+    ASSERT_TRUE(run_until([&] {
+        const auto line = ada.last<replication::ChatLine>();
+        return line && line->text.find("paused") != std::string::npos;
+    }));
     const std::uint64_t ticks = server->report().ticks;
     run(1.0);
     EXPECT_EQ(server->report().ticks, ticks);

@@ -101,7 +101,7 @@ void draw_pause(Canvas& canvas, MatchState& state, MatchChoice& choice) {
     const Layer layer("pause", canvas);
     const Box whole = canvas.whole();
     canvas.list->AddRectFilled(whole.min, whole.max, fade(palette::kVeil, 0.72));
-    const Box box = canvas.centred(360, 318);
+    const Box box = canvas.centred(360, 306);
     canvas.panel(box);
     const float middle = box.centre().x;
     canvas.text_middle({middle, box.min.y + canvas.px(44)}, TextStyle::kHeading, palette::kText,
