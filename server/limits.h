@@ -64,6 +64,7 @@ inline constexpr int kMaxMalformedPayloads = 8;
 // Beyond it the game pauses until the store writes again: 25 MB, hours of a busy server's coins.
 inline constexpr std::size_t kMaxUnwrittenTransactions = 200'000;
 inline constexpr std::size_t kMaxTransactionsPerCommit = 4096;
+inline constexpr std::size_t kMaxWaitingAnswers = 4096;
 inline constexpr std::size_t kMaxWaitingLoads = 256;
 
 }  // namespace fts::server
