@@ -72,7 +72,10 @@ TEST_P(FuzzReplay, withstands_everything_that_was_kept_cut_short) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Decoders, FuzzReplay, testing::ValuesIn(all_targets()),
-                         [](const auto& info) { return info.param.name; });
+std::string name_of(const testing::TestParamInfo<Target>& target) {
+    return target.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Decoders, FuzzReplay, testing::ValuesIn(all_targets()), name_of);
 
 }  // namespace
