@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "client/core/data_folder.h"
 #include "client/core/endpoint.h"
@@ -243,9 +244,17 @@ void App::Impl::leave(double now_s) {
     stage = Stage::kMenu;
 }
 
+// ImGui looks at keys once a frame and would miss a tap that is shorter: the release of a key waits
+// for the frame after its press.
 void App::Impl::poll_events() {
+    std::vector<SDL_Scancode> pressed;
     SDL_Event event;
-    while (SDL_PollEvent(&event) != 0) {
+    SDL_PumpEvents();
+    while (SDL_PeepEvents(&event, 1, SDL_PEEKEVENT, SDL_FIRSTEVENT, SDL_LASTEVENT) == 1) {
+        const SDL_Scancode scancode = event.key.keysym.scancode;
+        if (event.type == SDL_KEYUP && std::ranges::count(pressed, scancode) > 0) break;
+        if (event.type == SDL_KEYDOWN) pressed.push_back(scancode);
+        SDL_PeepEvents(&event, 1, SDL_GETEVENT, SDL_FIRSTEVENT, SDL_LASTEVENT);
         const bool typing = window->handle(event);
         devices->handle(event, typing);
         if (event.type == SDL_QUIT) quit = true;

@@ -89,6 +89,8 @@ std::unique_ptr<Window> Window::open(const WindowConfig& config, std::string& er
         error = no_display_message();
         return nullptr;
     }
+    // Where no window manager hands out the focus, keys would go nowhere.
+    SDL_SetWindowInputFocus(window);
     return opened;
 }
 
