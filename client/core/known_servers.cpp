@@ -73,13 +73,14 @@ KnownServers KnownServers::load(const std::filesystem::path& path) {
 }
 
 std::optional<net::PublicKey> KnownServers::find(const net::Address& server) const {
+    if (net::is_loopback(server)) return std::nullopt;
     const auto line = std::ranges::find(lines_, net::to_string(server), &Line::address);
     if (line == lines_.end()) return std::nullopt;
     return line->key;
 }
 
 bool KnownServers::pin(const net::Address& server, const net::PublicKey& key, std::string& error) {
-    if (find(server)) return true;
+    if (net::is_loopback(server) || find(server)) return true;
     if (lines_.empty()) lines_.push_back({std::string(kHeading), "", {}});
     const std::string address = net::to_string(server);
     lines_.push_back({address + " " + to_hex(key), address, key});

@@ -1,6 +1,7 @@
 // KnownServers: the key of each server, pinned on first use, in a text file of lines "address key"
 // with the key as 64 hexadecimal digits; lines that start with # are remarks. A line that makes no
-// sense is reported, kept, and pins nothing.
+// sense is reported, kept, and pins nothing. Servers on this machine are not pinned: many come and
+// go at the same address, and whoever can listen there has the machine already.
 #pragma once
 
 #include <filesystem>

@@ -56,6 +56,12 @@ std::string to_string(const Address& address) {
     return "[" + v6.to_string() + "]" + port;
 }
 
+bool is_loopback(const Address& address) {
+    const asio::ip::address_v6 v6(address.ip);
+    return v6.is_v4_mapped() ? asio::ip::make_address_v4(asio::ip::v4_mapped, v6).is_loopback()
+                             : v6.is_loopback();
+}
+
 Resolved resolve(std::string_view host_and_port, std::uint16_t default_port) {
     const std::string quoted = "'" + std::string(host_and_port) + "'";
     std::optional<HostAndPort> parts = split(host_and_port);

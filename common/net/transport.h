@@ -24,6 +24,8 @@ struct Address {
     friend auto operator<=>(const Address&, const Address&) = default;
 };
 std::string to_string(const Address& address);
+// Whether it names this machine itself: 127.0.0.0/8 or ::1.
+bool is_loopback(const Address& address);
 
 // "host:port", "host" (with the default port), "[v6]:port". Resolves names; the error says what is
 // wrong and what to do about it.

@@ -76,6 +76,23 @@ TEST(KnownServers, know_a_pinned_server_after_a_restart) {
     EXPECT_FALSE(again.find(net::address_of(1, 7778)));
 }
 
+TEST(KnownServers, hold_no_server_of_this_machine_to_a_key) {
+    const harness::TempFolder temp;
+    std::string error;
+    const std::filesystem::path path = temp.path() / "known_servers";
+    KnownServers known = KnownServers::load(path);
+    for (const char* here : {"127.0.0.1:7777", "127.1.2.3:7777", "[::1]:7777"}) {
+        const net::Address server = *net::resolve(here, 0).address;
+        EXPECT_TRUE(net::is_loopback(server)) << here;
+        EXPECT_TRUE(known.pin(server, key_of(1), error)) << here;
+        EXPECT_FALSE(known.find(server)) << here;
+    }
+    const net::Address elsewhere = *net::resolve("192.0.2.1:7777", 0).address;
+    EXPECT_FALSE(net::is_loopback(elsewhere));
+    EXPECT_TRUE(known.pin(elsewhere, key_of(1), error)) << error;
+    EXPECT_TRUE(known.find(elsewhere));
+}
+
 TEST(KnownServers, keep_the_first_key_they_saw) {
     const TempFolder temp;
     const auto path = temp.path() / "known_servers";

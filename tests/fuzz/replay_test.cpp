@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Target {
     std::string name;
     int (*one_input)(const std::uint8_t*, std::size_t);
 };
+std::ostream& operator<<(std::ostream& out, const Target& target) { return out << target.name; }
 
 std::vector<Target> all_targets() {
     std::vector<Target> targets;
