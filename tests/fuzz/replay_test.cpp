@@ -23,7 +23,9 @@ struct Target {
     std::string name;
     int (*one_input)(const std::uint8_t*, std::size_t);
 };
-std::ostream& operator<<(std::ostream& out, const Target& target) { return out << target.name; }
+std::ostream& operator<<(std::ostream& out, const Target& target) {
+    return out << target.name;
+}
 
 std::vector<Target> all_targets() {
     std::vector<Target> targets;
