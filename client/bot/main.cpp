@@ -14,9 +14,9 @@
 #include "client/bot/report.h"
 #include "client/bot/script.h"
 
+namespace fts {
 namespace {
 
-using namespace fts;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kOk = 0, kFailed = 1, kUsage = 2;
@@ -171,9 +171,7 @@ int run(Options& options) {
     return report.passed ? kOk : kFailed;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int main_of_bots(int argc, char** argv) {
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     CLI::App app{"Headless players for Fear The Sphere: they join a server, play, and report."};
@@ -185,4 +183,11 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? kOk : kUsage;
     }
     return run(options);
+}
+
+}  // namespace
+}  // namespace fts
+
+int main(int argc, char** argv) {
+    return fts::main_of_bots(argc, argv);
 }
