@@ -88,7 +88,7 @@ struct App::Impl {
     void join();
     void host();
     void start_server(int port);
-    void connect(const std::string& address, const std::optional<net::PublicKey>& pin);
+    void connect(const std::string& name, const std::optional<net::PublicKey>& pin);
     void pin_server();
     void leave(double now_s);
     void remember();

@@ -31,7 +31,7 @@ class Effects {
     };
     struct Falling {
         client::BallView ball;
-        double born_s;
+        double born_s = 0.0;
     };
     struct Sample {
         physics::Vec2d position_m;

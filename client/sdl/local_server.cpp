@@ -4,9 +4,9 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
-#include <signal.h>
 #include <string_view>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -73,6 +73,7 @@ std::unique_ptr<LocalServer> LocalServer::start(const LocalServerConfig& config,
         words.insert(words.end(), {"--data", config.data_folder.string()});
     }
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
 

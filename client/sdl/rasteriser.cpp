@@ -310,7 +310,8 @@ std::uint32_t Rasteriser::sample(float u, float v) const {
     const int y0 = std::clamp(static_cast<int>(top), 0, atlas_height_ - 1);
     const int x1 = std::min(x0 + 1, atlas_width_ - 1), y1 = std::min(y0 + 1, atlas_height_ - 1);
     const auto texel = [&](int x, int y) -> std::uint32_t {
-        return atlas_[static_cast<std::size_t>(y * atlas_width_ + x)];
+        return atlas_[static_cast<std::size_t>(y) * static_cast<std::size_t>(atlas_width_) +
+                      static_cast<std::size_t>(x)];
     };
     const std::uint32_t upper = texel(x0, y0) * (256U - share_x) + texel(x1, y0) * share_x;
     const std::uint32_t lower = texel(x0, y1) * (256U - share_x) + texel(x1, y1) * share_x;
