@@ -187,11 +187,11 @@ void draw_words(const Canvas& canvas, const Track& track, const Hit::Side& side,
 // One ball of figure 2 with its velocity split along and across the line of centres.
 struct SplitSide {
     ImVec2 centre;
-    float radius;
-    Colour colour;
-    double mass_kg;
-    double along_mps, across_mps;
-    double px_per_mps;
+    float radius = 0.0F;
+    Colour colour{};
+    double mass_kg = 0.0;
+    double along_mps = 0.0, across_mps = 0.0;
+    double px_per_mps = 0.0;
 };
 
 void draw_split_side(const Canvas& canvas, const SplitSide& side, float arrow_y, float sign) {

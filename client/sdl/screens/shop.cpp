@@ -170,7 +170,7 @@ bool draw_card(const Canvas& canvas, const Box& card, const client::View& view, 
 
 std::string heading(const client::View& view) {
     if (!view.last_level_end) return "Between levels";
-    const std::string level = "Level " + std::to_string(view.last_level_end->number);
+    std::string level = "Level " + std::to_string(view.last_level_end->number);
     switch (view.last_level_end->outcome) {
         case replication::LevelOutcome::kCleared:
             return level + " cleared";
@@ -295,7 +295,8 @@ ShopChoice draw_shop(Canvas& canvas, const client::View& view, ShopState& state,
     const float height = canvas.px(200);
     for (int i = 0; i < static_cast<int>(game::kStatCount); ++i) {
         const float x = panel.min.x + inset + static_cast<float>(i % kColumns) * (width + gap);
-        const float y = top + static_cast<float>(i / kColumns) * (height + gap);
+        const int row = i / kColumns;
+        const float y = top + static_cast<float>(row) * (height + gap);
         if (draw_card(canvas, {{x, y}, {x + width, y + height}}, view, i)) slot = i;
     }
     ShopChoice choice;
