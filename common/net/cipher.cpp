@@ -24,8 +24,8 @@ void require_sodium() {
 
 Hash hmac(Bytes key, std::initializer_list<Bytes> parts) {
     assert(key.size() <= kHashBlockBytes);
-    std::array<std::uint8_t, kHashBlockBytes> inner_pad;
-    std::array<std::uint8_t, kHashBlockBytes> outer_pad;
+    std::array<std::uint8_t, kHashBlockBytes> inner_pad{};
+    std::array<std::uint8_t, kHashBlockBytes> outer_pad{};
     inner_pad.fill(0x36);
     outer_pad.fill(0x5c);
     for (std::size_t i = 0; i < key.size(); ++i) {

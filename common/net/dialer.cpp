@@ -204,12 +204,13 @@ void Dialer::Impl::receive_sealed(const Address& from, Bytes datagram) {
         events.emplace_back(Connected{0, noise->peer_identity(), config.server});
         noise.reset();
     }
+    const auto goodbye = received.goodbye;
     append_events(0, std::move(received), events);
     if (outcome == Session::Outcome::kProtocolError) {
         session->say_goodbye(DisconnectReason::kProtocolError, "a packet made no sense", now_s);
         end(DisconnectReason::kProtocolError, "a packet from " + server_name() + " made no sense");
-    } else if (received.goodbye) {
-        end(received.goodbye->reason, received.goodbye->detail);
+    } else if (goodbye) {
+        end(goodbye->reason, goodbye->detail);
     }
 }
 
