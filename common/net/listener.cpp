@@ -174,12 +174,13 @@ void Listener::Impl::receive_sealed(const Address& from, ConnectionId id, Bytes 
     Session& session = found->second.session;
     const Session::Outcome outcome = session.receive(from, datagram, now_s, received);
     if (outcome == Session::Outcome::kDropped) return;
+    const auto goodbye = received.goodbye;
     append_events(id, std::move(received), events);
     if (outcome == Session::Outcome::kProtocolError) {
         session.say_goodbye(DisconnectReason::kProtocolError, "a packet made no sense", now_s);
         end(id, DisconnectReason::kProtocolError, "a packet made no sense");
-    } else if (received.goodbye) {
-        end(id, received.goodbye->reason, received.goodbye->detail);
+    } else if (goodbye) {
+        end(id, goodbye->reason, goodbye->detail);
     }
 }
 
