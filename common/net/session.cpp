@@ -35,7 +35,7 @@ Session::Outcome Session::receive(const Address& from, Bytes datagram, double no
         ++drops_[drop::kReplayed];
         return Outcome::kDropped;
     }
-    std::array<std::uint8_t, kMaxPlaintextBytes> opened;
+    std::array<std::uint8_t, kMaxPlaintextBytes> opened{};
     const auto plaintext = std::span(opened).first(sealed.size() - kTagBytes);
     if (!open(keys_.receive, number, header, sealed, plaintext)) {
         ++drops_[drop::kBadSeal];
@@ -86,7 +86,7 @@ void Session::say_goodbye(DisconnectReason reason, std::string_view detail, doub
 }
 
 void Session::transmit(const Channel::Written& written, double now_s) {
-    std::array<std::uint8_t, kMaxDatagramBytes> datagram;
+    std::array<std::uint8_t, kMaxDatagramBytes> datagram{};
     ByteWriter header(datagram);
     header.put(kSealedMarker);
     header.put(id_);
