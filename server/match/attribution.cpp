@@ -149,6 +149,7 @@ std::vector<Attribution::Share> Attribution::credit(Actor victim, std::uint32_t 
     const auto scorer = std::find_if(owner_chain.begin(), owner_chain.end(),
                                      [](const Actor& actor) { return actor.is_player(); });
     std::vector<Share> shares;
+    shares.reserve(fractions.size());
     for (const auto& [actor, fraction] : fractions)
         shares.push_back({actor, fraction, scorer == owner_chain.end() || actor != *scorer});
     std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {

@@ -79,7 +79,7 @@ class Attribution {
 
     void record(const Hit& hit);
     // Once a tick for each ball on the platform.
-    void observe(Actor victim, std::uint32_t tick, bool well_inside);
+    void observe(Actor actor, std::uint32_t tick, bool well_inside);
     void respawned(Actor victim);
     // Drops what has expired; call it now and then to keep the memory bounded.
     void expire(std::uint32_t now);
