@@ -74,7 +74,7 @@ game::AiGroup group_of(const scene::AiGroup& group) {
     return result;
 }
 
-static_assert(static_cast<int>(game::Behaviour::kChaser) == scene::CHASER - scene::CHASER);
+static_assert(static_cast<int>(game::Behaviour::kChaser) == 0);
 static_assert(static_cast<int>(game::Behaviour::kEdgeGuard) == scene::EDGE_GUARD - scene::CHASER);
 static_assert(static_cast<int>(game::Behaviour::kInterceptor) ==
               scene::INTERCEPTOR - scene::CHASER);
