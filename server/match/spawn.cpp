@@ -36,7 +36,7 @@ physics::Vec2d scatter_near(const physics::Platform& platform, const physics::Ve
     for (int i = 0; i < kScatterTries; ++i) {
         const double x = random.between(-spread_m, spread_m);
         const double y = random.between(-spread_m, spread_m);
-        const physics::Vec2d point = around_m + physics::Vec2d{x, y};
+        physics::Vec2d point = around_m + physics::Vec2d{x, y};
         if (physics::distance_to_edge_m(platform, point) >= margin) return point;
     }
     return innermost_point(platform);
