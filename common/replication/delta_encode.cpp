@@ -81,7 +81,8 @@ void write_changes(ByteWriter& out, const BallState& before, const BallState& no
     if (!same_body(before, now)) mask |= kBodyChanged;
 
     const bool barely_moved = dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
-    if (mask == kPositionChanged && barely_moved) {
+    const bool is_added = ticks == 0;  // needs its mask: there is nothing to be nudged from
+    if (mask == kPositionChanged && barely_moved && !is_added) {
         out.u8(static_cast<std::uint8_t>(kNudged + 3 * (dx + 1) + dy + 1));
         return;
     }

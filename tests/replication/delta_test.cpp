@@ -246,5 +246,17 @@ TEST(Delta, GreatestSnapshotFitsPartsOfAmpleSize) {
     EXPECT_TRUE(encode_delta(Snapshot{}, now, kMinPartBytes).empty()) << "too many parts";
 }
 
+// Found by fuzzing: such a ball was written as one that moved by a step, which the decoder refuses.
+TEST(Delta, a_new_ball_beside_the_origin_with_nothing_else_set_comes_back) {
+    Snapshot snapshot;
+    snapshot.tick = 9;
+    for (std::uint16_t id = 1; id <= 9; ++id) {
+        snapshot.balls.push_back({.id = id, .x = (id - 1) / 3 - 1, .y = (id - 1) % 3 - 1});
+    }
+    const auto parts = encode_delta(Snapshot{}, snapshot, 1000);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(decode_part(Snapshot{}, parts.front()), snapshot);
+}
+
 }  // namespace
 }  // namespace fts::replication
