@@ -1,5 +1,6 @@
 #include "server/plain_text.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -43,10 +44,8 @@ bool is_visible(std::uint32_t c) {
         {0xfff0, 0xffff},     // specials
         {0xe0000, 0x10ffff},  // tags, private use
     }};
-    for (const Range& range : kHidden) {
-        if (c >= range.first && c <= range.last) return false;
-    }
-    return true;
+    return std::ranges::none_of(
+        kHidden, [c](const Range& range) { return c >= range.first && c <= range.last; });
 }
 
 }  // namespace
