@@ -72,6 +72,8 @@ void account(const Contact<Scalar>& contact, CollisionAudit& audit) {
     const Change energy = energy_change(contact);
     audit.energy_change_j += energy.after - energy.before;
     audit.energy_seen_j += energy.before;
+    audit.worst_penetration =
+        std::max(audit.worst_penetration, static_cast<double>(contact.penetration));
     if (!contact.b) {
         ++audit.wall_collisions;
         return;

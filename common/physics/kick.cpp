@@ -32,21 +32,21 @@ class Damping {
 }  // namespace
 
 template <typename Scalar>
-bool kick(Bodies<Scalar>& bodies, Scalar span_s) {
+bool kick(Bodies<Scalar>& bodies, Scalar scene_drag_per_s, Scalar span_s) {
     Damping<Scalar> damping(span_s);
     bool acted = false;
     for (const BodyId id : bodies.ids) {
         const Control<Scalar>& control = bodies.control[id.index];
-        if (!control.acts()) continue;
-        acted = true;
-        damping.set_drag(control.drag_per_s);
+        acted = acted || control.acts();
+        if (!control.acts() && scene_drag_per_s == Scalar(0)) continue;
+        damping.set_drag(control.drag_per_s + scene_drag_per_s);
         Vec2<Scalar>& velocity = bodies.velocity_mps[id.index];
         velocity = velocity * damping.kept() + control.acceleration_mps2 * damping.felt_span_s();
     }
     return acted;
 }
 
-template bool kick<double>(Bodies<double>&, double);
-template bool kick<float>(Bodies<float>&, float);
+template bool kick<double>(Bodies<double>&, double, double);
+template bool kick<float>(Bodies<float>&, float, float);
 
 }  // namespace fts::physics

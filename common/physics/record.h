@@ -23,6 +23,12 @@ struct Contact {
     Vec2<Scalar> velocity_a_before_mps, velocity_a_after_mps;
     Vec2<Scalar> velocity_b_before_mps, velocity_b_after_mps;  // zero for a wall
     Scalar mass_a_kg, mass_b_kg;                               // b infinite for a wall
+    // How far the discs overlapped when the hit was found, in units of the smaller radius: 0 but
+    // for round-off where times of impact are exact.
+    Scalar penetration = Scalar(0);
+    // Above 1: one of so many contacts of one instant that were resolved together; the velocities
+    // hold what all of them did.
+    std::uint32_t contacts_at_once = 1;
 };
 
 // A body that left the platform in the last step; it is no longer in the world.
@@ -36,6 +42,7 @@ struct Fall {
 
 // Running sums over all collisions since the world was made. A collision with an infinite mass is
 // seen from that mass's rest frame, where energy is conserved, and has no momentum to compare.
+// Contacts that were resolved together are compared together.
 struct CollisionAudit {
     std::uint64_t ball_collisions = 0;
     std::uint64_t wall_collisions = 0;
@@ -44,6 +51,7 @@ struct CollisionAudit {
     // is 1.
     double worst_energy_error = 0.0;
     double worst_momentum_error = 0.0;
+    double worst_penetration = 0.0;  // in units of the smaller radius
     // Sum of the signed energy changes of all collisions, over the sum of the pairs' energies.
     double energy_change_j = 0.0;
     double energy_seen_j = 0.0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <string_view>
 
 namespace fts::physics {
@@ -61,18 +60,33 @@ Verdict check_shape(const Ring& ring) {
                   "give less than outer_radius_m, which is " + text_of(ring.outer_radius_m));
 }
 
-Verdict check_walls(const Walls& walls) {
+// `name` is the boundary's field: walls or periodic.
+Verdict check_box(const std::string& name, const Vec2d& min_m, const Vec2d& max_m) {
     const std::string range = "give finite coordinates within " + text_of(kMaxCoordinateM) + " m";
-    if (!within(walls.min_m, kMaxCoordinateM)) {
-        return refuse("walls.min_m", text_of(walls.min_m), range);
-    }
-    if (!within(walls.max_m, kMaxCoordinateM)) {
-        return refuse("walls.max_m", text_of(walls.max_m), range);
-    }
-    if ((walls.max_m - walls.min_m).minCoeff() > 0.0) return std::nullopt;
+    if (!within(min_m, kMaxCoordinateM)) return refuse(name + ".min_m", text_of(min_m), range);
+    if (!within(max_m, kMaxCoordinateM)) return refuse(name + ".max_m", text_of(max_m), range);
+    if ((max_m - min_m).minCoeff() > 0.0) return std::nullopt;
     return refuse(
-        "walls.max_m", text_of(walls.max_m),
-        "give more than walls.min_m, which is " + text_of(walls.min_m) + ", in both coordinates");
+        name + ".max_m", text_of(max_m),
+        "give more than " + name + ".min_m, which is " + text_of(min_m) + ", in both coordinates");
+}
+
+Verdict check_boundary(const Scene& scene) {
+    if (scene.periodic && scene.walls) {
+        return refuse("periodic", "given beside walls", "keep one of the two");
+    }
+    if (scene.periodic && scene.platform) {
+        return refuse("periodic", "given beside a platform", "keep one of the two");
+    }
+    if (scene.walls) {
+        if (auto error = check_box("walls", scene.walls->min_m, scene.walls->max_m)) return error;
+    }
+    if (scene.periodic) {
+        const Periodic& box = *scene.periodic;
+        if (auto error = check_box("periodic", box.min_m, box.max_m)) return error;
+    }
+    if (!scene.platform) return std::nullopt;
+    return std::visit([](const auto& shape) { return check_shape(shape); }, *scene.platform);
 }
 
 Verdict check_values(const BodyDef& body, const std::string& name) {
@@ -114,25 +128,66 @@ Verdict check_inside_walls(const BodyDef& body, const Walls& walls, const std::s
                       text_of(walls.max_m));
 }
 
+Verdict check_inside_periodic(const BodyDef& body, const Periodic& box, const std::string& name) {
+    const double width = (box.max_m - box.min_m).minCoeff();
+    if (width < kMinPeriodicWidthInRadii * body.radius_m) {
+        return refuse(name + ".radius_m", text_of(body.radius_m),
+                      "the periodic box is only " + text_of(width) + " m wide; give at most " +
+                          text_of(width / kMinPeriodicWidthInRadii) + " m");
+    }
+    const Vec2d margin = (body.position_m - box.min_m).cwiseMin(box.max_m - body.position_m);
+    if (margin.minCoeff() >= 0.0) return std::nullopt;
+    return refuse(
+        name + ".position_m", text_of(body.position_m),
+        "keep it in the periodic box from " + text_of(box.min_m) + " to " + text_of(box.max_m));
+}
+
+struct Placed {
+    Vec2d position_m;
+    double radius_m;
+    std::size_t body;
+};
+
+// Every body, and of those near a side of a periodic box their images beyond the opposite side.
+std::vector<Placed> with_images(const Scene& scene) {
+    std::vector<Placed> placed;
+    double widest_m = 0.0;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        placed.push_back({scene.bodies[i].position_m, scene.bodies[i].radius_m, i});
+        widest_m = std::max(widest_m, scene.bodies[i].radius_m);
+    }
+    if (!scene.periodic) return placed;
+    const Vec2d extent = scene.periodic->max_m - scene.periodic->min_m;
+    for (int axis = 0; axis < 2; ++axis) {
+        const std::size_t count = placed.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            Placed image = placed[i];
+            const double reach = image.radius_m + widest_m;
+            if (!(image.position_m[axis] < scene.periodic->min_m[axis] + reach)) continue;
+            image.position_m[axis] += extent[axis];
+            placed.push_back(image);
+        }
+    }
+    return placed;
+}
+
 // Along x, so that only bodies whose extents overlap in x are compared.
-Verdict check_overlaps(const std::vector<BodyDef>& bodies) {
-    std::vector<std::size_t> order(bodies.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto left = [&](std::size_t i) { return bodies[i].position_m.x() - bodies[i].radius_m; };
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-        return left(i) != left(j) ? left(i) < left(j) : i < j;
-    });
-    for (std::size_t m = 0; m < order.size(); ++m) {
-        const BodyDef& body = bodies[order[m]];
+Verdict check_overlaps(const Scene& scene) {
+    std::vector<Placed> placed = with_images(scene);
+    const auto left = [](const Placed& body) { return body.position_m.x() - body.radius_m; };
+    std::stable_sort(placed.begin(), placed.end(),
+                     [&](const Placed& a, const Placed& b) { return left(a) < left(b); });
+    for (std::size_t m = 0; m < placed.size(); ++m) {
+        const Placed& body = placed[m];
         const double right = body.position_m.x() + body.radius_m;
-        for (std::size_t n = m + 1; n < order.size() && left(order[n]) < right; ++n) {
-            const BodyDef& other = bodies[order[n]];
+        for (std::size_t n = m + 1; n < placed.size() && left(placed[n]) < right; ++n) {
+            const Placed& other = placed[n];
             const double reach = body.radius_m + other.radius_m;
             const double distance = (body.position_m - other.position_m).norm();
             if (distance >= reach * (1.0 - kTouchTolerance)) continue;
-            const auto [first, second] = std::minmax(order[m], order[n]);
+            const auto [first, second] = std::minmax(body.body, other.body);
             return refuse("body[" + std::to_string(second) + "].position_m",
-                          text_of(bodies[second].position_m),
+                          text_of(scene.bodies[second].position_m),
                           text_of(reach - distance) + " m inside body[" + std::to_string(first) +
                               "]; move them to at least " + text_of(reach) + " m apart");
         }
@@ -148,6 +203,9 @@ std::optional<SceneError> validate(const BodyDef& body, const Scene& scene,
     if (scene.walls) {
         if (auto error = check_inside_walls(body, *scene.walls, name)) return error;
     }
+    if (scene.periodic) {
+        if (auto error = check_inside_periodic(body, *scene.periodic, name)) return error;
+    }
     if (scene.platform && distance_to_edge_m(*scene.platform, body.position_m) < 0.0) {
         return refuse(name + ".position_m", text_of(body.position_m),
                       "that is " + text_of(-distance_to_edge_m(*scene.platform, body.position_m)) +
@@ -156,7 +214,7 @@ std::optional<SceneError> validate(const BodyDef& body, const Scene& scene,
     return std::nullopt;
 }
 
-std::optional<SceneError> validate(const Scene& scene) {
+std::optional<SceneError> validate(const Scene& scene, Overlaps overlaps) {
     if (!within(scene.restitution, 0.0, 1.0)) {
         return refuse("restitution", text_of(scene.restitution),
                       "give a number from 0 (they stick) to 1 (elastic)");
@@ -165,18 +223,16 @@ std::optional<SceneError> validate(const Scene& scene) {
         return refuse("body", std::to_string(scene.bodies.size()) + " entries long",
                       "give at most " + std::to_string(kMaxBodies));
     }
-    if (scene.walls) {
-        if (auto error = check_walls(*scene.walls)) return error;
+    if (!within(scene.drag_per_s, 0.0, kMaxDragPerS)) {
+        return refuse("drag_per_s", text_of(scene.drag_per_s),
+                      "give a number from 0 (none) to " + text_of(kMaxDragPerS));
     }
-    if (scene.platform) {
-        const auto check = [](const auto& shape) { return check_shape(shape); };
-        if (auto error = std::visit(check, *scene.platform)) return error;
-    }
+    if (auto error = check_boundary(scene)) return error;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const std::string name = "body[" + std::to_string(i) + "]";
         if (auto error = validate(scene.bodies[i], scene, name)) return error;
     }
-    return check_overlaps(scene.bodies);
+    return overlaps == Overlaps::kAccepted ? std::nullopt : check_overlaps(scene);
 }
 
 }  // namespace fts::physics

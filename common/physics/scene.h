@@ -48,11 +48,22 @@ struct Walls {
     Vec2d max_m = Vec2d::Zero();
 };
 
+// A box whose opposite sides are one: what leaves on one side enters on the other. The world keeps
+// positions inside it.
+struct Periodic {
+    Vec2d min_m = Vec2d::Zero();
+    Vec2d max_m = Vec2d::Zero();
+};
+
+// A periodic scene has neither walls nor a platform.
 struct Scene {
     std::vector<BodyDef> bodies;
     std::optional<Walls> walls;
+    std::optional<Periodic> periodic;
     std::optional<Platform> platform;
     double restitution = 1.0;  // [0, 1]
+    // Linear drag on every body, dv/dt = -drag v, beside what its Control says.
+    double drag_per_s = 0.0;  // [0, kMaxDragPerS]
 };
 
 // What is wrong with a scene, in words that name field, value and remedy:
@@ -62,7 +73,11 @@ struct SceneError {
     std::string message;
 };
 
-std::optional<SceneError> validate(const Scene& scene);
+// A game refuses bodies that start inside each other. A study may want them: such a pair collides
+// while it approaches and is left alone while it parts.
+enum class Overlaps : std::uint8_t { kRefused, kAccepted };
+
+std::optional<SceneError> validate(const Scene& scene, Overlaps overlaps = Overlaps::kRefused);
 // One body alone against the scene's boundary; the scene's own bodies are not looked at. `name` is
 // how the message calls it.
 std::optional<SceneError> validate(const BodyDef& body, const Scene& scene,
@@ -81,6 +96,10 @@ inline constexpr double kTouchTolerance = 1e-12;
 // A box must be wider than its largest ball by this part of the ball's radius, or the ball would
 // hit both walls without end.
 inline constexpr double kMinWallClearance = 0.01;
+// A periodic box is wider than so many of its largest radius, so that two balls touch through one
+// image only.
+inline constexpr double kMinPeriodicWidthInRadii = 4.01;
+inline constexpr double kMaxDragPerS = 1e6;
 
 // Signed distance from a point to the nearest edge of the platform, metres; positive inside.
 double distance_to_edge_m(const Platform& platform, const Vec2d& point_m);

@@ -3,21 +3,29 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "common/physics/bodies.h"
 #include "common/physics/record.h"
+#include "common/physics/solver_choice.h"
 
 namespace fts::physics {
 
+// What a scene has besides its bodies, so that a solver need not look for what is not there.
 template <typename Scalar>
-struct Boundary {
+struct Model {
     struct Box {
         Vec2<Scalar> min_m, max_m;
+        Vec2<Scalar> extent_m() const { return max_m - min_m; }
     };
     std::optional<Box> walls;
+    std::optional<Box> periodic;
     std::optional<Platform> platform;
     Scalar restitution = Scalar(1);
+    // Of the living bodies. World keeps them true.
+    bool equal_radii = false;
+    bool equal_masses = false;  // and finite
 };
 
 template <typename Scalar>
@@ -32,9 +40,22 @@ class Solver {
   public:
     virtual ~Solver() = default;
 
-    // Advances by `span_s` >= 0, removes bodies that fall, and appends to the record.
-    virtual DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Boundary<Scalar>& boundary,
+    // Advances by `span_s` >= 0, removes bodies that fall, and appends to the record. In a periodic
+    // scene positions end inside the box.
+    virtual DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model,
                                       Scalar span_s, Record<Scalar>& record) = 0;
+
+    // Somebody else changed, added or removed bodies since the last drift, after `synchronise`:
+    // nothing that was predicted holds.
+    virtual void forget() {}
+
+    // Brings positions and velocities in `bodies` to the end of the last drift. A solver that works
+    // on its own copy does it only when asked, so that a tick in which nothing happens costs
+    // nothing. It never changes what is simulated.
+    virtual void synchronise(Bodies<Scalar>&) {}
 };
+
+template <typename Scalar>
+std::unique_ptr<Solver<Scalar>> make_solver(const SolverChoice& choice);
 
 }  // namespace fts::physics

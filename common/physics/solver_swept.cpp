@@ -25,13 +25,13 @@ constexpr std::uint32_t kNobody = 0xffffffff;
 template <typename Scalar>
 class SweptSolver final : public Solver<Scalar> {
   public:
-    DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Boundary<Scalar>& boundary,
-                              Scalar span_s, Record<Scalar>& record) override;
+    DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
+                              Record<Scalar>& record) override;
 
   private:
     using Vec = Vec2<Scalar>;
 
-    void begin(Bodies<Scalar>& bodies, const Boundary<Scalar>& boundary, Scalar span_s,
+    void begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                Record<Scalar>& record);
     void predict_everybody();
     void predict(std::uint32_t body, const Box<Scalar>& box);
@@ -57,7 +57,7 @@ class SweptSolver final : public Solver<Scalar> {
     Scalar restitution_of(bool just_hit) const;
 
     Bodies<Scalar>* bodies_ = nullptr;
-    const Boundary<Scalar>* boundary_ = nullptr;
+    const Model<Scalar>* model_ = nullptr;
     Record<Scalar>* record_ = nullptr;
     Scalar span_s_ = Scalar(0);
     Scalar now_s_ = Scalar(0);
@@ -72,10 +72,9 @@ class SweptSolver final : public Solver<Scalar> {
 };
 
 template <typename Scalar>
-DriftReport<Scalar> SweptSolver<Scalar>::drift(Bodies<Scalar>& bodies,
-                                               const Boundary<Scalar>& boundary, Scalar span_s,
-                                               Record<Scalar>& record) {
-    begin(bodies, boundary, span_s, record);
+DriftReport<Scalar> SweptSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Model<Scalar>& model,
+                                               Scalar span_s, Record<Scalar>& record) {
+    begin(bodies, model, span_s, record);
     predict_everybody();
     DriftReport<Scalar> report;
     const std::uint32_t budget = event_budget(bodies.ids.size());
@@ -96,10 +95,10 @@ DriftReport<Scalar> SweptSolver<Scalar>::drift(Bodies<Scalar>& bodies,
 }
 
 template <typename Scalar>
-void SweptSolver<Scalar>::begin(Bodies<Scalar>& bodies, const Boundary<Scalar>& boundary,
-                                Scalar span_s, Record<Scalar>& record) {
+void SweptSolver<Scalar>::begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
+                                Record<Scalar>& record) {
     bodies_ = &bodies;
-    boundary_ = &boundary;
+    model_ = &model;
     record_ = &record;
     span_s_ = span_s;
     now_s_ = Scalar(0);
@@ -127,8 +126,8 @@ void SweptSolver<Scalar>::predict(std::uint32_t body, const Box<Scalar>& box) {
     broadphase_.for_each_near(body, box, [&](std::uint32_t other) {
         if (bodies_->alive[other]) predict_pair(std::min(body, other), std::max(body, other));
     });
-    if (boundary_->walls && !is_immovable(body)) predict_walls(body);
-    if (boundary_->platform) predict_fall(body);
+    if (model_->walls && !is_immovable(body)) predict_walls(body);
+    if (model_->platform) predict_fall(body);
 }
 
 template <typename Scalar>
@@ -148,8 +147,8 @@ void SweptSolver<Scalar>::predict_walls(std::uint32_t body) {
     const Vec& velocity = bodies_->velocity_mps[body];
     const Scalar radius = bodies_->radius_m[body];
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
-        const Scalar below = position[axis] - (boundary_->walls->min_m[axis] + radius);
-        const Scalar above = (boundary_->walls->max_m[axis] - radius) - position[axis];
+        const Scalar below = position[axis] - (model_->walls->min_m[axis] + radius);
+        const Scalar above = (model_->walls->max_m[axis] - radius) - position[axis];
         expect({now_s_ + time_until_wall(below, -velocity[axis]), EventKind::kWall, body, 2 * axis,
                 count_[body], 0});
         expect({now_s_ + time_until_wall(above, velocity[axis]), EventKind::kWall, body,
@@ -159,7 +158,7 @@ void SweptSolver<Scalar>::predict_walls(std::uint32_t body) {
 
 template <typename Scalar>
 void SweptSolver<Scalar>::predict_fall(std::uint32_t body) {
-    const Scalar time = time_until_edge<Scalar>(*boundary_->platform, position_at(body, now_s_),
+    const Scalar time = time_until_edge<Scalar>(*model_->platform, position_at(body, now_s_),
                                                 bodies_->velocity_mps[body]);
     expect({now_s_ + time, EventKind::kFall, body, 0, count_[body], 0});
 }
@@ -233,7 +232,7 @@ void SweptSolver<Scalar>::collide_wall(std::uint32_t body, std::uint32_t side) {
     Vec& velocity = all.velocity_mps[body];
     const Vec before = velocity;
     position[axis] =
-        at_max ? boundary_->walls->max_m[axis] - radius : boundary_->walls->min_m[axis] + radius;
+        at_max ? model_->walls->max_m[axis] - radius : model_->walls->min_m[axis] + radius;
     velocity[axis] *= -restitution_of(was_just_hit(body));
     Vec normal = Vec::Zero();
     normal[axis] = at_max ? Scalar(-1) : Scalar(1);
@@ -329,7 +328,7 @@ bool SweptSolver<Scalar>::was_just_hit(std::uint32_t body) const {
 
 template <typename Scalar>
 Scalar SweptSolver<Scalar>::restitution_of(bool just_hit) const {
-    return just_hit ? Scalar(1) : boundary_->restitution;
+    return just_hit ? Scalar(1) : model_->restitution;
 }
 
 }  // namespace

@@ -7,51 +7,146 @@
 
 #include "common/physics/bodies.h"
 #include "common/physics/diagnostics.h"
+#include "common/physics/exponential.h"
 #include "common/physics/kick.h"
-#include "common/physics/solver_swept.h"
+#include "common/physics/periodic.h"
+#include "common/physics/solver.h"
 
 namespace fts::physics {
 namespace {
 
 template <typename Scalar>
-Boundary<Scalar> boundary_of(const Scene& scene) {
-    Boundary<Scalar> boundary;
-    if (scene.walls) {
-        boundary.walls = {scene.walls->min_m.cast<Scalar>(), scene.walls->max_m.cast<Scalar>()};
+typename Model<Scalar>::Box box_of(const Vec2d& min_m, const Vec2d& max_m) {
+    return {min_m.cast<Scalar>(), max_m.cast<Scalar>()};
+}
+
+template <typename Scalar>
+Model<Scalar> model_of(const Scene& scene) {
+    Model<Scalar> model;
+    if (scene.walls) model.walls = box_of<Scalar>(scene.walls->min_m, scene.walls->max_m);
+    if (scene.periodic) {
+        model.periodic = box_of<Scalar>(scene.periodic->min_m, scene.periodic->max_m);
     }
-    boundary.platform = scene.platform;
-    boundary.restitution = static_cast<Scalar>(scene.restitution);
-    return boundary;
+    model.platform = scene.platform;
+    model.restitution = static_cast<Scalar>(scene.restitution);
+    return model;
+}
+
+template <typename Value>
+bool all_equal(const std::vector<BodyId>& ids, const std::vector<Value>& values) {
+    return std::all_of(ids.begin(), ids.end(),
+                       [&](BodyId id) { return values[id.index] == values[ids.front().index]; });
 }
 
 }  // namespace
 
 template <typename Scalar>
 struct World<Scalar>::Impl {
+    explicit Impl(const Scene& scene, const SolverChoice& choice)
+        : rules(scene), model(model_of<Scalar>(scene)), solver(make_solver<Scalar>(choice)) {
+        rules.bodies.clear();
+        for (const BodyDef& body : scene.bodies) put(body);
+    }
+
     Scene rules;  // the scene without its bodies
-    Boundary<Scalar> boundary;
+    Model<Scalar> model;
     Bodies<Scalar> bodies;
     Record<Scalar> record;
-    std::unique_ptr<Solver<Scalar>> solver = make_swept_solver<Scalar>();
-    bool anything_accelerates = false;
+    std::unique_ptr<Solver<Scalar>> solver;
+    bool anything_thrusts = false;
+    bool changed = true;  // by others than the solver, since the last drift
 
     BodyId put(const BodyDef& body) {
-        return bodies.add(body.position_m.cast<Scalar>(), body.velocity_mps.cast<Scalar>(),
+        changed = true;
+        Vec2<Scalar> position_m = body.position_m.cast<Scalar>();
+        if (model.periodic) position_m = wrapped<Scalar>(position_m, *model.periodic);
+        return bodies.add(position_m, body.velocity_mps.cast<Scalar>(),
                           static_cast<Scalar>(body.radius_m), static_cast<Scalar>(body.mass_kg));
     }
 
-    void kick_if_anything_accelerates(Scalar span_s) {
-        if (anything_accelerates) anything_accelerates = kick(bodies, span_s);
+    Bodies<Scalar>& current() {
+        solver->synchronise(bodies);
+        return bodies;
     }
+    Bodies<Scalar>& to_be_changed() {
+        changed = true;
+        return current();
+    }
+
+    DriftReport<Scalar> drift(Scalar span_s) {
+        if (changed) look_again();
+        return solver->drift(bodies, model, span_s, record);
+    }
+    void look_again() {
+        solver->forget();
+        model.equal_radii = all_equal(bodies.ids, bodies.radius_m);
+        model.equal_masses =
+            all_equal(bodies.ids, bodies.mass_kg) &&
+            (bodies.ids.empty() || std::isfinite(bodies.mass_kg[bodies.ids.front().index]));
+        changed = false;
+    }
+
+    void kick_for(Scalar span_s) {
+        const auto drag_per_s = static_cast<Scalar>(rules.drag_per_s);
+        anything_thrusts = kick(to_be_changed(), drag_per_s, span_s);
+    }
+
+    DriftReport<Scalar> step_with_thrust(Scalar span_s);
+    DriftReport<Scalar> step_with_drag(Scalar span_s);
 };
 
 template <typename Scalar>
-World<Scalar>::World(const Scene& scene) : impl_(std::make_unique<Impl>()) {
-    assert(!validate(scene));
-    impl_->rules = scene;
-    impl_->rules.bodies.clear();
-    impl_->boundary = boundary_of<Scalar>(scene);
-    for (const BodyDef& body : scene.bodies) impl_->put(body);
+DriftReport<Scalar> World<Scalar>::Impl::step_with_thrust(Scalar span_s) {
+    const Scalar half_s = Scalar(0.5) * span_s;
+    kick_for(half_s);
+    const DriftReport<Scalar> report = drift(span_s);
+    kick_for(std::max(Scalar(0), half_s - report.unspent_time_s));
+    return report;
+}
+
+// In the slower time s, in which drag is not felt. What the record has is told in time again.
+template <typename Scalar>
+DriftReport<Scalar> World<Scalar>::Impl::step_with_drag(Scalar span_s) {
+    const double drag_per_s = rules.drag_per_s;
+    const auto time_of = [&](Scalar slow_s) {
+        const double passed_s = -std::log1p(-drag_per_s * static_cast<double>(slow_s)) / drag_per_s;
+        return std::min(static_cast<Scalar>(passed_s), span_s);
+    };
+    const auto slow_time_of = [&](Scalar passed_s) {
+        const double mean = decay(drag_per_s * static_cast<double>(passed_s)).mean;
+        return static_cast<Scalar>(static_cast<double>(passed_s) * mean);
+    };
+    const Scalar slow_span_s = slow_time_of(span_s);
+    DriftReport<Scalar> report = drift(slow_span_s);
+    if (report.overrun) {
+        report.unspent_time_s = span_s - time_of(slow_span_s - report.unspent_time_s);
+    }
+    const auto slowed = [&](Scalar passed_s) {
+        return static_cast<Scalar>(decay(drag_per_s * static_cast<double>(passed_s)).factor);
+    };
+    const Scalar kept = slowed(span_s - report.unspent_time_s);
+    Bodies<Scalar>& all = to_be_changed();
+    for (const BodyId id : all.ids) all.velocity_mps[id.index] *= kept;
+    for (Contact<Scalar>& contact : record.contacts) {
+        contact.time_s = time_of(contact.time_s);
+        const Scalar kept_then = slowed(contact.time_s);
+        contact.impulse_ns *= kept_then;
+        contact.velocity_a_before_mps *= kept_then;
+        contact.velocity_a_after_mps *= kept_then;
+        contact.velocity_b_before_mps *= kept_then;
+        contact.velocity_b_after_mps *= kept_then;
+    }
+    for (Fall<Scalar>& fall : record.falls) {
+        fall.time_s = time_of(fall.time_s);
+        fall.velocity_mps *= slowed(fall.time_s);
+    }
+    return report;
+}
+
+template <typename Scalar>
+World<Scalar>::World(const Scene& scene, const SolverChoice& solver)
+    : impl_(std::make_unique<Impl>(scene, solver)) {
+    assert(!validate(scene, Overlaps::kAccepted));
 }
 
 template <typename Scalar>
@@ -64,13 +159,12 @@ World<Scalar>& World<Scalar>::operator=(World&&) noexcept = default;
 template <typename Scalar>
 StepReport World<Scalar>::step(Scalar tick_duration_s) {
     assert(std::isfinite(tick_duration_s) && tick_duration_s >= Scalar(0));
-    const Scalar half_s = Scalar(0.5) * tick_duration_s;
     impl_->record.begin_step();
-    impl_->kick_if_anything_accelerates(half_s);
-    const DriftReport<Scalar> drift =
-        impl_->solver->drift(impl_->bodies, impl_->boundary, tick_duration_s, impl_->record);
-    impl_->kick_if_anything_accelerates(std::max(Scalar(0), half_s - drift.unspent_time_s));
-    return {drift.events, drift.overrun, static_cast<double>(drift.unspent_time_s)};
+    const DriftReport<Scalar> report =
+        impl_->anything_thrusts         ? impl_->step_with_thrust(tick_duration_s)
+        : impl_->rules.drag_per_s > 0.0 ? impl_->step_with_drag(tick_duration_s)
+                                        : impl_->drift(tick_duration_s);
+    return {report.events, report.overrun, static_cast<double>(report.unspent_time_s)};
 }
 
 template <typename Scalar>
@@ -86,7 +180,7 @@ std::optional<BodyId> World<Scalar>::add(const BodyDef& body) {
 template <typename Scalar>
 bool World<Scalar>::remove(BodyId id) {
     if (!contains(id)) return false;
-    impl_->bodies.remove(id.index);
+    impl_->to_be_changed().remove(id.index);
     return true;
 }
 
@@ -98,7 +192,7 @@ bool World<Scalar>::contains(BodyId id) const {
 template <typename Scalar>
 BodyView<Scalar> World<Scalar>::body(BodyId id) const {
     assert(contains(id));
-    const Bodies<Scalar>& all = impl_->bodies;
+    const Bodies<Scalar>& all = impl_->current();
     return {id, all.position_m[id.index], all.velocity_mps[id.index], all.radius_m[id.index],
             all.mass_kg[id.index]};
 }
@@ -109,21 +203,21 @@ void World<Scalar>::set_control(BodyId id, const Control<Scalar>& control) {
     assert(control.acceleration_mps2.allFinite());
     assert(std::isfinite(control.drag_per_s) && control.drag_per_s >= Scalar(0));
     impl_->bodies.control[id.index] = control;
-    impl_->anything_accelerates = impl_->anything_accelerates || control.acts();
+    impl_->anything_thrusts = impl_->anything_thrusts || control.acts();
 }
 
 template <typename Scalar>
 void World<Scalar>::set_mass(BodyId id, Scalar mass_kg) {
     assert(contains(id));
     assert(mass_kg > Scalar(0));
-    impl_->bodies.mass_kg[id.index] = mass_kg;
+    impl_->to_be_changed().mass_kg[id.index] = mass_kg;
 }
 
 template <typename Scalar>
 void World<Scalar>::set_velocity(BodyId id, const Vec2<Scalar>& velocity_mps) {
     assert(contains(id));
     assert(velocity_mps.allFinite());
-    impl_->bodies.velocity_mps[id.index] = velocity_mps;
+    impl_->to_be_changed().velocity_mps[id.index] = velocity_mps;
 }
 
 template <typename Scalar>
@@ -150,11 +244,12 @@ template <typename Scalar>
 bool World<Scalar>::is_free(const Vec2<Scalar>& position_m, Scalar radius_m) const {
     constexpr Scalar kTolerance =
         std::max(static_cast<Scalar>(kTouchTolerance), 16 * std::numeric_limits<Scalar>::epsilon());
-    const Bodies<Scalar>& all = impl_->bodies;
+    const Bodies<Scalar>& all = impl_->current();
     return std::all_of(all.ids.begin(), all.ids.end(), [&](BodyId id) {
         const Scalar reach = radius_m + all.radius_m[id.index];
-        const Scalar distance = (position_m - all.position_m[id.index]).norm();
-        return distance >= reach * (Scalar(1) - kTolerance);
+        const Vec2<Scalar> separation =
+            nearest_image<Scalar>(position_m - all.position_m[id.index], impl_->model.periodic);
+        return separation.norm() >= reach * (Scalar(1) - kTolerance);
     });
 }
 
@@ -165,17 +260,17 @@ const CollisionAudit& World<Scalar>::audit() const {
 
 template <typename Scalar>
 std::uint64_t World<Scalar>::state_hash() const {
-    return physics::state_hash(impl_->bodies);
+    return physics::state_hash(impl_->current());
 }
 
 template <typename Scalar>
 double World<Scalar>::kinetic_energy_j() const {
-    return physics::kinetic_energy_j(impl_->bodies);
+    return physics::kinetic_energy_j(impl_->current());
 }
 
 template <typename Scalar>
 Vec2d World<Scalar>::momentum_ns() const {
-    return physics::momentum_ns(impl_->bodies);
+    return physics::momentum_ns(impl_->current());
 }
 
 template class World<double>;

@@ -2,14 +2,19 @@
 //
 // A tick of length h is kick(h/2), drift(h), kick(h/2) (Strang splitting). Kick applies each body's
 // Control: thrust and linear drag, integrated exactly, so that top speed does not depend on the
-// tick rate. Drift is straight-line motion with elastic collisions at exact times of impact in time
-// order, and falls at the exact time the centre crosses the platform's edge.
+// tick rate. Drift is straight-line motion with elastic collisions and falls, as the solver has it
+// (solver_choice.h); the default finds exact times of impact and processes them in time order.
+//
+// A scene whose only acceleration is its own drag needs no kick: with one drag k for all, bodies
+// move on the same lines as without it, in the slower time s = (1 - exp(-k t)) / k. Such a tick is
+// drift(s), and every velocity times exp(-k h): exact, collisions included.
 //
 // Deterministic: the same scene, calls and spans give the same bits on every compiler and
 // optimisation level. Not thread-safe: one thread at a time. No allocation after warm-up.
 //
 // Bodies keep their BodyId for life; a removed id is never valid again (generation). Iteration
-// order is ascending slot index, which does not depend on addresses.
+// order is ascending slot index, which does not depend on addresses. In a periodic scene positions
+// are inside the box after every step.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +25,7 @@
 #include "common/physics/body.h"
 #include "common/physics/record.h"
 #include "common/physics/scene.h"
+#include "common/physics/solver_choice.h"
 
 namespace fts::physics {
 
@@ -34,8 +40,8 @@ struct StepReport {
 template <typename Scalar>
 class World {
   public:
-    // The scene must be valid (scene.h, validate).
-    explicit World(const Scene& scene);
+    // The scene must be valid (scene.h, validate), but for overlaps.
+    explicit World(const Scene& scene, const SolverChoice& solver = {});
     ~World();
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;

@@ -1,0 +1,48 @@
+// From a scene and a tolerance to the cheapest way to advance it that meets it, and why.
+//
+// The tolerance is a *collision error*: how wrong velocities are after a tick, against exact
+// dynamics from the same state at its start, in units of what collisions did to them:
+//
+//     E = sqrt( sum |v - v_exact|^2 / sum |v_exact - v_before|^2 )
+//
+// over all bodies and the ticks in which something collided. 0 is exact; 1 is as wrong as ignoring
+// every collision. It is local, so that it says something in chaotic scenes too, in which every
+// trajectory is lost after some tens of collisions however exact the solver.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/physics/scene.h"
+#include "common/physics/solver_choice.h"
+
+namespace fts::physics {
+
+enum class ScalarKind : std::uint8_t { kFloat, kDouble };
+
+// "float", "double".
+std::string_view to_string(ScalarKind kind);
+std::optional<ScalarKind> scalar_from(std::string_view name);
+
+struct Fidelity {
+    double tolerance = 0.0;  // > 0, of the collision error
+    double tick_duration_s = 1.0 / 60.0;
+    bool allow_float = true;
+};
+
+struct Plan {
+    SolverChoice solver;
+    ScalarKind scalar = ScalarKind::kDouble;
+    std::string broadphase;  // what finds the pairs, in words
+    double error_bound =
+        0.0;  // of the collision error; above the tolerance only if `meets` is false
+    bool meets_tolerance = true;
+    std::string reason;  // one sentence
+};
+
+// The scene must be valid.
+Plan plan(const Scene& scene, const Fidelity& fidelity);
+
+}  // namespace fts::physics
