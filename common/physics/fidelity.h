@@ -1,13 +1,14 @@
 // From a scene and a tolerance to the cheapest way to advance it that meets it, and why.
 //
-// The tolerance is a *collision error*: how wrong velocities are after a tick, against exact
-// dynamics from the same state at its start, in units of what collisions did to them:
+// The tolerance is a *collision error*: how wrong velocities are after a tick in which something
+// collided, against exact dynamics from the same state at its start, as a part of the speed:
 //
-//     E = sqrt( sum |v - v_exact|^2 / sum |v_exact - v_before|^2 )
+//     E = sqrt( sum |v - v_exact|^2 / sum |v_exact|^2 )
 //
-// over all bodies and the ticks in which something collided. 0 is exact; 1 is as wrong as ignoring
-// every collision. It is local, so that it says something in chaotic scenes too, in which every
-// trajectory is lost after some tens of collisions however exact the solver.
+// over the bodies that collide in the tick, in truth or by the solver, and over such ticks. It is
+// local, so that it says something in chaotic scenes too, in which every trajectory is lost after
+// some tens of collisions however exact the solver; and a grazing hit that is missed counts as
+// little as it matters.
 #pragma once
 
 #include <cstdint>
