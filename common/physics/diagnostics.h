@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "common/physics/bodies.h"
 #include "common/physics/record.h"
@@ -11,6 +12,12 @@ namespace fts::physics {
 // Adds one collision to the running sums.
 template <typename Scalar>
 void account(const Contact<Scalar>& contact, CollisionAudit& audit);
+
+// Adds contacts that were resolved together: the energy and momentum of all their bodies, each
+// counted once, are compared as a whole. With walls or infinite masses momentum is not compared,
+// and energy is seen from the rest frame of these, or not compared when they do not share one.
+template <typename Scalar>
+void account_together(std::span<const Contact<Scalar>> contacts, CollisionAudit& audit);
 
 // Sums over finite masses, in double, ascending by index.
 template <typename Scalar>
