@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 
+#include "common/physics/solver_discrete.h"
 #include "common/physics/solver_swept.h"
 
 namespace fts::physics {
@@ -26,8 +27,17 @@ std::optional<SolverKind> solver_from(std::string_view name) {
 template <typename Scalar>
 std::unique_ptr<Solver<Scalar>> make_solver(const SolverChoice& choice) {
     assert(choice.substeps >= 1 && choice.substeps <= kMaxSubsteps);
-    assert(choice.kind == SolverKind::kSwept);
-    return make_swept_solver<Scalar>();
+    switch (choice.kind) {
+        case SolverKind::kDiscrete:
+            return make_discrete_solver<Scalar>(choice.substeps);
+        case SolverKind::kSwept:
+            return make_swept_solver<Scalar>();
+        case SolverKind::kSeed:
+        case SolverKind::kEvent:
+            break;
+    }
+    assert(false);
+    return nullptr;
 }
 
 template std::unique_ptr<Solver<double>> make_solver(const SolverChoice&);

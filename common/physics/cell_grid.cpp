@@ -1,0 +1,226 @@
+#include "common/physics/cell_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "common/physics/near_lanes.h"
+
+namespace fts::physics {
+namespace {
+
+constexpr double kCellsPerDisc = 2.0;
+constexpr std::uint32_t kFewestCells = 16;
+// By how much cells are wider than the largest disc, so that the round-off of a cell's number never
+// parts what touches: that grows with the number of cells.
+constexpr double kMargin = 8.0;
+// Outliers beyond these do not stretch the grid; a uniform crowd lies wholly within the widened
+// range.
+constexpr std::size_t kSample = 256;
+constexpr double kLowQuantile = 0.05;
+constexpr double kHighQuantile = 0.95;
+constexpr double kWiden = 0.1;
+
+template <typename Scalar>
+Scalar quantile(std::vector<Scalar>& values, double q) {
+    const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+}  // namespace
+
+template <typename Scalar>
+std::uint32_t CellGrid<Scalar>::Axis::cell_of(Scalar x_m) const {
+    const Scalar cell = (x_m - origin_m) * cells_per_m;
+    return static_cast<std::uint32_t>(std::min(std::max(Scalar(0), cell), last_cell));
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::fit_axis(Axis& axis, std::span<const Scalar> x_m) {
+    sample_.clear();
+    const std::size_t step = std::max<std::size_t>(1, x_m.size() / kSample);
+    for (std::size_t i = 0; i < x_m.size(); i += step) sample_.push_back(x_m[i]);
+    if (sample_.empty()) sample_.push_back(Scalar(0));
+    const Scalar low = quantile(sample_, kLowQuantile);
+    const Scalar high = quantile(sample_, kHighQuantile);
+    const Scalar margin = static_cast<Scalar>(kWiden) * (high - low);
+    axis.origin_m = low - margin;
+    axis.extent_m = (high - low) + Scalar(2) * margin;
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::divide(Axis& axis, Scalar cell_m, std::uint32_t most_cells) {
+    constexpr Scalar kRoundOff =
+        static_cast<Scalar>(kMargin) * std::numeric_limits<Scalar>::epsilon();
+    const Scalar at_most = std::min(axis.extent_m / cell_m, static_cast<Scalar>(most_cells));
+    const Scalar wanted = at_most / (Scalar(1) + kRoundOff * at_most);
+    axis.cells = wanted > Scalar(1) ? static_cast<std::uint32_t>(wanted) : 1;
+    axis.last_cell = static_cast<Scalar>(axis.cells - 1);
+    axis.cells_per_m = axis.cells > 1 ? static_cast<Scalar>(axis.cells) / axis.extent_m : Scalar(0);
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::fit(const Discs<Scalar>& discs,
+                           const std::optional<typename Model<Scalar>::Box>& box) {
+    periodic_ = box.has_value();
+    for (int a = 0; a < 2; ++a) {
+        Axis& axis = axis_[a];
+        if (box) {
+            axis.origin_m = box->min_m[a];
+            axis.extent_m = box->extent_m()[a];
+        } else {
+            fit_axis(axis, a == 0 ? discs.x_m : discs.y_m);
+        }
+    }
+    const auto most_cells =
+        static_cast<std::uint32_t>(kCellsPerDisc * discs.count()) + kFewestCells;
+    const Scalar reach = Scalar(2) * discs.largest_radius_m;
+    const Scalar area = axis_[0].extent_m * axis_[1].extent_m;
+    const Scalar height = std::max(reach, std::sqrt(area / static_cast<Scalar>(most_cells)));
+    divide(axis_[1], height, most_cells);
+    divide(axis_[0], reach, std::max(1U, most_cells / axis_[1].cells));
+    stride_ = axis_[0].cells + 2;
+
+    // A row of images above the last, and what is read beyond the last cell.
+    first_.resize(std::size_t{stride_} * (axis_[1].cells + 1) + 3);
+    cell_.reserve(discs.count());
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs) {
+    sort(discs);
+    if (discs.radius_m.empty()) {
+        const Scalar reach = discs.largest_radius_m + discs.largest_radius_m;
+        search<true>(reach * reach, pairs);
+    } else {
+        search<false>(Scalar(0), pairs);
+    }
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::count_cells(const Discs<Scalar>& discs) {
+    std::fill(first_.begin(), first_.end(), 0);
+    cell_.resize(discs.count());
+    const Axis column = axis_[0], row = axis_[1];
+    const std::uint32_t stride = stride_;
+    for (std::uint32_t i = 0; i < discs.count(); ++i) {
+        const std::uint32_t cell =
+            row.cell_of(discs.y_m[i]) * stride + column.cell_of(discs.x_m[i]) + 1;
+        cell_[i] = cell;
+        ++first_[cell];
+    }
+}
+
+// Half of the neighbours of every cell are looked at, so that images are needed left, right and
+// above.
+template <typename Scalar>
+void CellGrid<Scalar>::add_images(const Discs<Scalar>& discs) {
+    images_.clear();
+    const std::uint32_t columns = axis_[0].cells, rows = axis_[1].cells;
+    const auto add = [&](std::uint32_t disc, Scalar x_m, Scalar y_m, std::uint32_t cell) {
+        images_.push_back({x_m, y_m, {disc, cell}});
+        ++first_[cell];
+    };
+    const auto add_row = [&](std::uint32_t disc, Scalar y_m, std::uint32_t cell,
+                             std::uint32_t column) {
+        const Scalar x_m = discs.x_m[disc];
+        if (column == 1) add(disc, x_m + axis_[0].extent_m, y_m, cell + columns);
+        if (column == columns) add(disc, x_m - axis_[0].extent_m, y_m, cell - columns);
+    };
+    for (std::uint32_t i = 0; i < discs.count(); ++i) {
+        const std::uint32_t column = cell_[i] % stride_;
+        add_row(i, discs.y_m[i], cell_[i], column);
+        if (cell_[i] < stride_) {
+            const Scalar above_m = discs.y_m[i] + axis_[1].extent_m;
+            const std::uint32_t cell_above = cell_[i] + rows * stride_;
+            add(i, discs.x_m[i], above_m, cell_above);
+            add_row(i, above_m, cell_above, column);
+        }
+    }
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::sort(const Discs<Scalar>& discs) {
+    count_cells(discs);
+    images_.clear();
+    if (periodic_) add_images(discs);
+
+    std::uint32_t total = 0;
+    for (std::uint32_t& first : first_) first = total += first;
+
+    x_m_.resize(total + kLanes);
+    y_m_.resize(total + kLanes);
+    placed_.resize(total + kLanes);
+    std::fill(x_m_.end() - kLanes, x_m_.end(), std::numeric_limits<Scalar>::infinity());
+    std::fill(y_m_.end() - kLanes, y_m_.end(), std::numeric_limits<Scalar>::infinity());
+    const bool equal_radii = discs.radius_m.empty();
+    if (!equal_radii) radius_m_.resize(total + kLanes);
+
+    const auto put = [&](const Image& image) {
+        const std::uint32_t to = --first_[image.placed.cell];
+        x_m_[to] = image.x_m;
+        y_m_[to] = image.y_m;
+        placed_[to] = image.placed;
+        if (!equal_radii) radius_m_[to] = discs.radius_m[image.placed.disc];
+    };
+    for (const Image& image : images_) put(image);
+    for (std::uint32_t i = discs.count(); i-- > 0;) {
+        put({discs.x_m[i], discs.y_m[i], {i, cell_[i]}});
+    }
+}
+
+template <typename Scalar>
+template <bool kEqualRadii>
+void CellGrid<Scalar>::search(Scalar reach_squared, std::vector<DiscPair>& pairs) const {
+    for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
+        const std::uint32_t left = row * stride_ + 1;
+        const std::uint32_t end = first_[left + axis_[0].cells];
+        for (std::uint32_t i = first_[left]; i < end; ++i) {
+            const std::uint32_t cell = placed_[i].cell;
+            const std::uint32_t above = cell + stride_;
+            search_run<kEqualRadii>(i, i + 1, first_[cell + 2], reach_squared, pairs);
+            search_run<kEqualRadii>(i, first_[above - 1], first_[above + 2], reach_squared, pairs);
+        }
+    }
+}
+
+// Always looks at the first lanes, since an empty run is not worth a branch that cannot be
+// foreseen.
+template <typename Scalar>
+template <bool kEqualRadii>
+inline void CellGrid<Scalar>::search_run(std::uint32_t i, std::uint32_t begin, std::uint32_t end,
+                                         Scalar reach_squared, std::vector<DiscPair>& pairs) const {
+    std::uint32_t j = begin;
+    do {
+        std::uint32_t near;
+        if constexpr (kEqualRadii) {
+            near = near_lanes(&x_m_[j], &y_m_[j], x_m_[i], y_m_[i], reach_squared);
+        } else {
+            near = overlapping_lanes(&x_m_[j], &y_m_[j], &radius_m_[j], x_m_[i], y_m_[i],
+                                     radius_m_[i]);
+        }
+        for (; near != 0; near &= near - 1) {
+            const std::uint32_t other = j + static_cast<std::uint32_t>(std::countr_zero(near));
+            if (other < end) pairs.push_back({placed_[i].disc, placed_[other].disc});
+        }
+        j += kLanes;
+    } while (j < end);
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::read_order(std::vector<std::uint32_t>& order) const {
+    order.clear();
+    for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
+        const std::uint32_t left = row * stride_ + 1;
+        for (std::uint32_t i = first_[left]; i < first_[left + axis_[0].cells]; ++i) {
+            order.push_back(placed_[i].disc);
+        }
+    }
+}
+
+template class CellGrid<double>;
+template class CellGrid<float>;
+
+}  // namespace fts::physics
