@@ -49,6 +49,83 @@ double momentum_error(const Contact<Scalar>& c) {
     return scale > 0.0 ? ((after_a + after_b) - (before_a + before_b)).norm() / scale : 0.0;
 }
 
+// What contacts of one instant did to all their bodies together.
+struct Together {
+    Change energy;
+    Vec2d momentum_change = Vec2d::Zero();
+    double momentum_scale = 0.0;
+};
+
+// One of the two bodies of a contact.
+struct Side {
+    BodyId id;
+    double mass_kg;
+    Vec2d before, after;
+};
+
+template <typename Scalar>
+Side side_a(const Contact<Scalar>& c) {
+    return {c.a, static_cast<double>(c.mass_a_kg), c.velocity_a_before_mps.template cast<double>(),
+            c.velocity_a_after_mps.template cast<double>()};
+}
+
+template <typename Scalar>
+Side side_b(const Contact<Scalar>& c) {
+    return {*c.b, static_cast<double>(c.mass_b_kg), c.velocity_b_before_mps.template cast<double>(),
+            c.velocity_b_after_mps.template cast<double>()};
+}
+
+// visit(side) once for each body.
+template <typename Scalar, typename Visit>
+void for_each_body(std::span<const Contact<Scalar>> contacts, Visit&& visit) {
+    const auto seen = [&](BodyId id, std::size_t end) {
+        return std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(end),
+                           [&](const auto& c) { return c.a == id || c.b == id; });
+    };
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (!seen(contacts[i].a, i)) visit(side_a(contacts[i]));
+        if (contacts[i].b && !seen(*contacts[i].b, i)) visit(side_b(contacts[i]));
+    }
+}
+
+// What does not move in any of the contacts; its velocity.
+struct Frame {
+    bool needed = false;
+    bool is_one = true;
+    Vec2d velocity_mps = Vec2d::Zero();
+
+    void hold(const Vec2d& velocity) {
+        is_one = is_one && (!needed || velocity == velocity_mps);
+        needed = true;
+        velocity_mps = velocity;
+    }
+};
+
+template <typename Scalar>
+Frame frame_of(std::span<const Contact<Scalar>> contacts) {
+    Frame frame;
+    for (const Contact<Scalar>& c : contacts) {
+        if (!c.b) frame.hold(Vec2d::Zero());
+    }
+    for_each_body(contacts, [&](const Side& side) {
+        if (std::isinf(side.mass_kg)) frame.hold(side.before);
+    });
+    return frame;
+}
+
+template <typename Scalar>
+Together together_of(std::span<const Contact<Scalar>> contacts, const Vec2d& frame_mps) {
+    Together sum;
+    for_each_body(contacts, [&](const Side& side) {
+        if (std::isinf(side.mass_kg)) return;
+        sum.energy.before += energy_j(side.mass_kg, side.before - frame_mps);
+        sum.energy.after += energy_j(side.mass_kg, side.after - frame_mps);
+        sum.momentum_change += side.mass_kg * (side.after - side.before);
+        sum.momentum_scale += (side.mass_kg * side.before).norm();
+    });
+    return sum;
+}
+
 class Fnv1a {
   public:
     template <typename Value>
@@ -84,6 +161,29 @@ void account(const Contact<Scalar>& contact, CollisionAudit& audit) {
                                             std::abs(energy.after - energy.before) / energy.before);
     }
     audit.worst_momentum_error = std::max(audit.worst_momentum_error, momentum_error(contact));
+}
+
+template <typename Scalar>
+void account_together(std::span<const Contact<Scalar>> contacts, CollisionAudit& audit) {
+    if (contacts.size() == 1) return account(contacts.front(), audit);
+    for (const Contact<Scalar>& contact : contacts) {
+        ++(contact.b ? audit.ball_collisions : audit.wall_collisions);
+        audit.worst_penetration =
+            std::max(audit.worst_penetration, static_cast<double>(contact.penetration));
+    }
+    const Frame frame = frame_of(contacts);
+    if (!frame.is_one) return;
+    const Together sum = together_of(contacts, frame.velocity_mps);
+    const double change = sum.energy.after - sum.energy.before;
+    audit.energy_change_j += change;
+    audit.energy_seen_j += sum.energy.before;
+    if (sum.energy.before > 0.0) {
+        audit.worst_energy_error =
+            std::max(audit.worst_energy_error, std::abs(change) / sum.energy.before);
+    }
+    if (frame.needed || !(sum.momentum_scale > 0.0)) return;
+    audit.worst_momentum_error =
+        std::max(audit.worst_momentum_error, sum.momentum_change.norm() / sum.momentum_scale);
 }
 
 template <typename Scalar>
@@ -123,6 +223,8 @@ std::uint64_t state_hash(const Bodies<Scalar>& bodies) {
 
 template void account(const Contact<double>&, CollisionAudit&);
 template void account(const Contact<float>&, CollisionAudit&);
+template void account_together(std::span<const Contact<double>>, CollisionAudit&);
+template void account_together(std::span<const Contact<float>>, CollisionAudit&);
 template double kinetic_energy_j(const Bodies<double>&);
 template double kinetic_energy_j(const Bodies<float>&);
 template Vec2d momentum_ns(const Bodies<double>&);

@@ -19,6 +19,7 @@ struct Contact {
     Vec2<Scalar> point_m;  // where the surfaces touched
     Vec2<Scalar> normal;   // unit, from b (or the wall) towards a
     Scalar impulse_ns;     // > 0, given to a along the normal
+    // In a periodic scene that of b is of the image that a touched.
     Vec2<Scalar> position_a_m, position_b_m;
     Vec2<Scalar> velocity_a_before_mps, velocity_a_after_mps;
     Vec2<Scalar> velocity_b_before_mps, velocity_b_after_mps;  // zero for a wall
@@ -55,6 +56,9 @@ struct CollisionAudit {
     // Sum of the signed energy changes of all collisions, over the sum of the pairs' energies.
     double energy_change_j = 0.0;
     double energy_seen_j = 0.0;
+    // Sets of simultaneous contacts that were not resolved within max_passes() (simultaneous.h).
+    // What was left of them came as later events.
+    std::uint64_t unfinished_sets = 0;
 };
 
 template <typename Scalar>

@@ -164,6 +164,11 @@ class ContactSet {
         Vec separation_m, normal;
         bool is_due = false;
     };
+    struct Projected {  // a member in projection_
+        std::uint32_t member;
+        Vec2d push_ns;     // what its contacts give it
+        double pushed_ns;  // the sum of their sizes
+    };
     struct Approaching {
         std::uint32_t component;
         std::uint32_t contact;
@@ -185,7 +190,11 @@ class ContactSet {
     void reflect_one(const Touch& touch, Scalar restitution);
     void reflect_many(std::size_t first, std::size_t last, double restitution);
     Scalar restitution_of(std::size_t first, std::size_t last, Scalar restitution) const;
+    void project(std::size_t first, std::size_t last);
+    void push(std::uint32_t member, double impulse_ns, const Vec2d& normal);
+    void move_on(const Projected& projected, double step);
     void give(std::uint32_t member, const Vec& velocity_mps, Scalar pushed_mps);
+    void mark_hit(std::uint32_t member);
     Hit<Scalar> hit_of(const Touch& touch, Scalar impulse_ns) const;
     void everybody_looks();
     std::uint32_t who_looks_next();
@@ -200,8 +209,7 @@ class ContactSet {
     std::vector<std::uint32_t> hit_bodies_;
     std::vector<Hit<Scalar>> hits_;
     ConeProjection projection_;
-    std::vector<std::uint32_t> projected_;  // members in projection_
-    std::vector<Vec2d> pushes_ns_;          // by projected member
+    std::vector<Projected> projected_;
 };
 
 template <typename Scalar>
