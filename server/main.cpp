@@ -56,6 +56,7 @@ std::optional<Resources> acquire(const Options& options, std::string& error) {
     config.arenas = options.arenas;
     config.players_per_arena = options.players_per_arena;
     config.seed = options.seed;
+    config.tolerance = options.tolerance;
 
     LoadedLevels levels = load_levels(options.levels_folder);
     if (!levels.error.empty()) {

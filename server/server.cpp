@@ -6,6 +6,7 @@
 
 #include "common/replication/wire.h"
 #include "server/limits.h"
+#include "server/match/level_plan.h"
 
 namespace fts::server {
 
@@ -37,8 +38,12 @@ Server::Server(const ServerConfig& config, net::Transport& transport, std::uniqu
     assert(!config.levels.empty());
     assert(config.arenas >= 1 && config.arenas <= kMaxArenas);
     assert(config.players_per_arena >= 1 && config.players_per_arena <= game::kMaxPlayersPerArena);
+    const std::vector<physics::Plan> plans =
+        plan_levels(config.levels, config.players_per_arena, config.tolerance);
+    for (const std::string& line : describe_levels(plans)) log_(LogLevel::kInfo, line);
+    MatchConfig match;
+    for (const physics::Plan& plan : plans) match.solvers.push_back(plan.solver);
     for (int i = 0; i < config.arenas; ++i) {
-        MatchConfig match;
         match.arena = i;
         match.seed = config.seed + static_cast<std::uint64_t>(i);
         match.levels = config.levels;

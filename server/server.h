@@ -24,6 +24,7 @@
 #include "common/game/rules.h"
 #include "common/net/connection.h"
 #include "common/net/transport.h"
+#include "common/physics/fidelity.h"
 #include "common/physics/world.h"
 #include "common/replication/messages.h"
 #include "server/economy/journal.h"
@@ -45,6 +46,7 @@ struct ServerConfig {
     int players_per_arena = game::kDefaultPlayersPerArena;  // [1, game::kMaxPlayersPerArena]
     std::uint64_t seed = 1;                                 // arena i plays with seed + i
     JournalConfig journal;
+    double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h
 };
 
 struct ArenaReport {

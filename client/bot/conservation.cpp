@@ -32,7 +32,7 @@ void write_side(std::ostream& out, const Side& side) {
 std::optional<ConservationError> conservation_error(const replication::CollisionReport& hit) {
     const Side& a = hit.own;
     const Side& b = hit.other;
-    if (!sound(a) || !sound(b)) return std::nullopt;
+    if (!sound(a) || !sound(b) || hit.contacts_at_once > 1) return std::nullopt;
     const Vec2d pa = a.mass_kg * a.velocity_before_mps, pb = b.mass_kg * b.velocity_before_mps;
     const Vec2d momentum_change =
         (a.mass_kg * a.velocity_after_mps + b.mass_kg * b.velocity_after_mps) - (pa + pb);
@@ -50,7 +50,7 @@ std::string_view hits_csv_heading() {
            "own_vx_before_mps,own_vy_before_mps,own_vx_after_mps,own_vy_after_mps,"
            "other_ball,other_player,other_mass_kg,other_radius_m,other_x_m,other_y_m,"
            "other_vx_before_mps,other_vy_before_mps,other_vx_after_mps,other_vy_after_mps,"
-           "normal_x,normal_y,impulse_ns,momentum_error,energy_error";
+           "normal_x,normal_y,impulse_ns,contacts_at_once,momentum_error,energy_error";
 }
 
 std::string hits_csv_line(int bot, const replication::CollisionReport& hit) {
@@ -59,7 +59,8 @@ std::string hits_csv_line(int bot, const replication::CollisionReport& hit) {
     out << bot << ',' << hit.tick << ',' << hit.time_in_tick_s;
     write_side(out, hit.own);
     write_side(out, hit.other);
-    out << ',' << hit.normal.x() << ',' << hit.normal.y() << ',' << hit.impulse_ns;
+    out << ',' << hit.normal.x() << ',' << hit.normal.y() << ',' << hit.impulse_ns << ','
+        << hit.contacts_at_once;
     if (const auto error = conservation_error(hit)) {
         out << ',' << error->momentum << ',' << error->energy;
     } else {

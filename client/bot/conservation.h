@@ -14,7 +14,8 @@ struct ConservationError {
     double energy = 0.0;    // |change of E1 + E2| / (E1 + E2) before
 };
 
-// Empty when the report holds values that are not finite or a mass that is not above 0.
+// Empty when the report holds values that are not finite or a mass that is not above 0, and for a
+// contact that was resolved together with others: those two alone keep nothing.
 std::optional<ConservationError> conservation_error(const replication::CollisionReport& hit);
 
 // A line of comma-separated values for each hit; every double with all its digits.

@@ -143,6 +143,11 @@ std::string other_name(const client::View& view, const Hit& hit) {
 std::string explain(const Hit& hit) {
     const double own_kg = hit.own.mass_kg, other_kg = hit.other.mass_kg;
     if (!(own_kg > 0.0) || !(other_kg > 0.0)) return "";
+    if (hit.contacts_at_once > 1) {
+        return "One of " + std::to_string(hit.contacts_at_once) +
+               " contacts of one instant, resolved together so that no order decides: what you two "
+               "did not keep between you, the others have.";
+    }
     const physics::Vec2d towards = -hit.normal;
     const double own_mps = hit.own.velocity_before_mps.dot(towards);
     const double other_mps = hit.other.velocity_before_mps.dot(towards);

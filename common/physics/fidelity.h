@@ -27,23 +27,37 @@ enum class ScalarKind : std::uint8_t { kFloat, kDouble };
 std::string_view to_string(ScalarKind kind);
 std::optional<ScalarKind> scalar_from(std::string_view name);
 
+// What a host calls them.
+inline constexpr double kAutoTolerance = 1e-6;
+inline constexpr double kFastTolerance = 0.05;
+inline constexpr double kExactTolerance = 0.0;
+
 struct Fidelity {
-    double tolerance = 0.0;  // > 0, of the collision error
+    double tolerance = kAutoTolerance;  // >= 0, of the collision error; 0: as exact as can be
     double tick_duration_s = 1.0 / 60.0;
     bool allow_float = true;
+    // Bodies will thrust, so that no calendar of collisions outlives a tick.
+    bool thrust = false;
 };
+
+// "auto", "fast", "exact", or a number above 0 and below 1.
+std::optional<double> tolerance_from(std::string_view text);
 
 struct Plan {
     SolverChoice solver;
     ScalarKind scalar = ScalarKind::kDouble;
-    std::string broadphase;  // what finds the pairs, in words
-    double error_bound =
-        0.0;  // of the collision error; above the tolerance only if `meets` is false
+    std::string broadphase;    // what finds the pairs, in words
+    double error_bound = 0.0;  // of the collision error
     bool meets_tolerance = true;
-    std::string reason;  // one sentence
+    double cost_ns_per_body_tick = 0.0;  // estimated; only ratios mean something
+    std::string reason;                  // one sentence
 };
 
-// The scene must be valid.
+// The scene must be valid, but for overlaps. Its speeds are taken from its bodies as they are, and
+// light bodies are expected to become as fast as their share of the energy allows.
 Plan plan(const Scene& scene, const Fidelity& fidelity);
+
+// "swept, double", "discrete, float, 4 substeps".
+std::string describe(const Plan& plan);
 
 }  // namespace fts::physics

@@ -119,6 +119,9 @@ struct CollisionReport {
     Side own, other;
     physics::Vec2d normal = physics::Vec2d::UnitX();  // unit, from other to own
     double impulse_ns = 0.0;
+    // Above 1: one of so many contacts of one instant that were resolved together. Momentum and
+    // energy were kept by all of them, not by these two alone.
+    std::uint32_t contacts_at_once = 1;
 };
 using ServerMessage = std::variant<Welcome, JoinRefused, LevelStarted, LevelEnded, Roster, Wallet,
                                    PurchaseResult, ChatLine, KnockOff, CollisionReport>;

@@ -150,6 +150,7 @@ void put(const CollisionReport& message, pb::ServerMessage& out) {
     put(message.other, *report.mutable_other());
     put(message.normal, *report.mutable_normal());
     report.set_impulse_ns(message.impulse_ns);
+    report.set_contacts_at_once(message.contacts_at_once);
 }
 
 // ---- Protobuf to values; false when a value is not acceptable
@@ -304,7 +305,8 @@ bool take(const pb::CollisionReport& from, CollisionReport& out) {
     return take_finite(from.time_in_tick_s(), out.time_in_tick_s) && out.time_in_tick_s >= 0 &&
            take(from.own(), out.own) && take(from.other(), out.other) &&
            take(from.normal(), out.normal) && std::abs(out.normal.norm() - 1) <= kUnitTolerance &&
-           take_finite(from.impulse_ns(), out.impulse_ns) && out.impulse_ns >= 0;
+           take_finite(from.impulse_ns(), out.impulse_ns) && out.impulse_ns >= 0 &&
+           take(from.contacts_at_once(), kMaxId, out.contacts_at_once) && out.contacts_at_once >= 1;
 }
 
 // ---- the two directions

@@ -22,6 +22,7 @@ std::string cut(const std::string& text, std::size_t max_bytes) {
 Match::Impl::Impl(const MatchConfig& match_config, Ledger& match_ledger)
     : config(match_config), ledger(match_ledger), random(match_config.seed) {
     assert(!config.levels.empty());
+    assert(config.solvers.empty() || config.solvers.size() == config.levels.size());
     assert(config.max_players > 0 && config.max_players <= game::kMaxPlayersPerArena);
 }
 

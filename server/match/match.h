@@ -28,6 +28,7 @@ struct MatchConfig {
     std::uint64_t seed = 1;
     std::vector<game::Level> levels;  // at least one, numbered 1, 2, 3, ...
     int max_players = game::kDefaultPlayersPerArena;
+    std::vector<physics::SolverChoice> solvers;  // one a level, or none: swept
 };
 
 // A message for one player, or for all in the arena when `to` is empty.

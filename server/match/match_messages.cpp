@@ -97,7 +97,8 @@ void Match::Impl::report_hit(std::uint16_t own, std::uint16_t other,
                             .own = own_is_a ? a : b,
                             .other = own_is_a ? b : a,
                             .normal = own_is_a ? contact.normal : -contact.normal,
-                            .impulse_ns = contact.impulse_ns};
+                            .impulse_ns = contact.impulse_ns,
+                            .contacts_at_once = contact.contacts_at_once};
 }
 
 replication::LevelStarted Match::Impl::level_started() const {

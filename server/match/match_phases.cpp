@@ -30,7 +30,8 @@ void Match::Impl::begin_level() {
     audit_before = audit;
     physics::Scene scene;
     scene.platform = level().platform;
-    world.emplace(scene);
+    world.emplace(scene,
+                  config.solvers.empty() ? physics::SolverChoice() : config.solvers[level_index]);
 
     waiting_ai.clear();
     for (std::size_t group = 0; group < level().ai.size(); ++group)

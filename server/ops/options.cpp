@@ -45,6 +45,21 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--name", options.name, "Name shown to players")
         ->envname("FTS_NAME")
         ->capture_default_str();
+    app.add_option_function<std::string>(
+           "--fidelity",
+           [&options](const std::string& text) {
+               const auto tolerance = physics::tolerance_from(text);
+               if (!tolerance) {
+                   throw CLI::ValidationError("--fidelity",
+                                              "'" + text +
+                                                  "' is neither auto, fast nor exact, nor an error "
+                                                  "above 0 and below 1 such as 0.001");
+               }
+               options.tolerance = *tolerance;
+           },
+           "How exact collisions are: auto, fast, exact, or the error that is tolerated")
+        ->envname("FTS_FIDELITY")
+        ->default_str("auto");
     app.add_option("--log-level", options.log_level, "debug, info, warning, error or off")
         ->envname("FTS_LOG_LEVEL")
         ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))

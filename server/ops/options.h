@@ -1,6 +1,5 @@
 // What a host may choose: by flag, in a configuration file, or by environment variable (FTS_PORT
-// for
-// --port, and so on). A flag goes before the file, the file before the environment.
+// for --port, and so on). A flag goes before the file, the file before the environment.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "common/game/rules.h"
+#include "common/physics/fidelity.h"
 
 namespace fts::server {
 
@@ -23,6 +23,7 @@ struct Options {
     int players_per_arena = game::kDefaultPlayersPerArena;
     std::uint64_t seed = 0;
     std::string name = "Fear The Sphere";
+    double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h
     std::string log_level = "info";
     std::string report_file;  // empty: none
 };

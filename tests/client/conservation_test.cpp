@@ -53,7 +53,7 @@ TEST(Conservation, finds_energy_that_was_lost_and_momentum_that_was_gained) {
     EXPECT_GT(error->energy, 1e-9);
 }
 
-TEST(Conservation, has_nothing_to_say_about_values_that_are_not_finite) {
+TEST(Conservation, has_nothing_to_say_about_what_is_not_finite_or_shared) {
     std::mt19937 random(13);
     CollisionReport hit = elastic_hit(random);
     hit.other.velocity_after_mps.x() = std::numeric_limits<double>::quiet_NaN();
@@ -61,6 +61,9 @@ TEST(Conservation, has_nothing_to_say_about_values_that_are_not_finite) {
     hit = elastic_hit(random);
     hit.own.mass_kg = 0.0;
     EXPECT_FALSE(conservation_error(hit));
+    hit = elastic_hit(random);
+    hit.contacts_at_once = 2;
+    EXPECT_FALSE(conservation_error(hit)) << "a third ball has its share";
 }
 
 TEST(HitsCsv, has_as_many_values_in_a_line_as_names_in_the_heading) {

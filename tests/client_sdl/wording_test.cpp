@@ -94,6 +94,12 @@ TEST(Explanation, shares_out_the_change_where_both_balls_move) {
         << text;
 }
 
+TEST(Explanation, says_when_others_had_their_share) {
+    auto hit = oblique_hit(1.0, 3.0, {-2.0, 0.5});
+    hit.contacts_at_once = 3;
+    EXPECT_TRUE(mentions(explain(hit), "One of 3 contacts")) << explain(hit);
+}
+
 TEST(Explanation, is_silent_about_masses_that_make_no_sense) {
     EXPECT_EQ(explain(oblique_hit(0.0, 0.0, {0, 0})), "");
 }

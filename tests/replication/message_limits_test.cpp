@@ -173,6 +173,9 @@ TEST(MessageLimits, CollisionReportsAreFiniteAndOfRealBalls) {
     report = sound_report();
     report.normal *= 2;
     EXPECT_FALSE(travels(report));
+    report = sound_report();
+    report.contacts_at_once = 0;
+    EXPECT_FALSE(travels(report));
 }
 
 TEST(MalformedMessages, AreNothing) {

@@ -157,11 +157,13 @@ TEST(Messages, CollisionReportKeepsEveryBitOfItsDoubles) {
     report.other = {3, 0, 2.0 / 3, 0.7, {4, 5}, {6, 7}, {8, 9}};
     report.normal = {0.6, -0.8};
     report.impulse_ns = 1.0 / 11;
+    report.contacts_at_once = 3;
     const CollisionReport back = through_the_wire(report);
     EXPECT_EQ(back.tick, report.tick);
     EXPECT_EQ(back.time_in_tick_s, report.time_in_tick_s);
     EXPECT_EQ(back.normal, report.normal);
     EXPECT_EQ(back.impulse_ns, report.impulse_ns);
+    EXPECT_EQ(back.contacts_at_once, report.contacts_at_once);
     for (const auto side : {&CollisionReport::own, &CollisionReport::other}) {
         const CollisionReport::Side &sent = report.*side, &got = back.*side;
         EXPECT_EQ(got.ball, sent.ball);

@@ -166,7 +166,8 @@ float draw_energy_bars(const Canvas& canvas, ImVec2 at, const Box& box, const Hi
     return at.y + canvas.px(38);
 }
 
-void draw_last_bit(const Canvas& canvas, ImVec2 at, const Box& box, const HitSums& sums) {
+void draw_last_bit(const Canvas& canvas, ImVec2 at, const Box& box, const HitSums& sums,
+                   std::uint32_t contacts_at_once) {
     const float before = at.x + canvas.px(112), after = at.x + canvas.px(300);
     const auto line = [&](float drop, Colour colour, const std::string& name, const std::string& a,
                           const std::string& b) {
@@ -182,6 +183,15 @@ void draw_last_bit(const Canvas& canvas, ImVec2 at, const Box& box, const HitSum
     digits(20, "Energy, J", sums.energy_before_j, sums.energy_after_j);
     digits(39, "Mom. x, N\xc2\xb7s", sums.momentum_before_ns.x(), sums.momentum_after_ns.x());
     digits(58, "Mom. y, N\xc2\xb7s", sums.momentum_before_ns.y(), sums.momentum_after_ns.y());
+    if (contacts_at_once > 1) {
+        canvas.paragraph({at.x, at.y + canvas.px(84)}, box.max.x - at.x, TextStyle::kCaption,
+                         palette::kTextQuiet,
+                         "Momentum and energy were kept by all " +
+                             std::to_string(contacts_at_once) +
+                             " contacts together (generalised reflections, Smith et al. 2012), not "
+                             "by these two balls alone.");
+        return;
+    }
     const bool kept = std::abs(sums.relative_energy_change) <= kRoundOff &&
                       sums.relative_momentum_change <= kRoundOff;
     canvas.paragraph({at.x, at.y + canvas.px(84)}, box.max.x - at.x, TextStyle::kCaption,
@@ -282,7 +292,7 @@ bool draw_inspector(Canvas& canvas, const client::View& view) {
     y = draw_table(canvas, {{right.min.x, y + canvas.px(14)}, right.max}, rows_of(hit, sums), other,
                    colours);
     y = draw_energy_bars(canvas, {right.min.x, y + canvas.px(24)}, right, hit, colours);
-    draw_last_bit(canvas, {right.min.x, y + canvas.px(26)}, right, sums);
+    draw_last_bit(canvas, {right.min.x, y + canvas.px(26)}, right, sums, hit.contacts_at_once);
     return closed;
 }
 
