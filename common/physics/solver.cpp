@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/physics/solver_discrete.h"
+#include "common/physics/solver_seed.h"
 #include "common/physics/solver_swept.h"
 
 namespace fts::physics {
@@ -28,11 +29,12 @@ template <typename Scalar>
 std::unique_ptr<Solver<Scalar>> make_solver(const SolverChoice& choice) {
     assert(choice.substeps >= 1 && choice.substeps <= kMaxSubsteps);
     switch (choice.kind) {
+        case SolverKind::kSeed:
+            return make_seed_solver<Scalar>(choice.substeps);
         case SolverKind::kDiscrete:
             return make_discrete_solver<Scalar>(choice.substeps);
         case SolverKind::kSwept:
             return make_swept_solver<Scalar>();
-        case SolverKind::kSeed:
         case SolverKind::kEvent:
             break;
     }
