@@ -64,13 +64,15 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"stb", "stb_", "client/sdl", true},
     {"stb", "stb_", "client/sdl", true},
     {"SQLite", "sqlite3.h", "server/economy", true},
-    {"CLI11", "CLI/", "server/main.cpp server/ops client/sdl/main.cpp client/bot/main.cpp", false},
+    {"CLI11", "CLI/",
+     "server/main.cpp server/lab server/ops client/sdl/main.cpp client/bot/main.cpp", false},
     {"spdlog", "spdlog/ fmt/", "server/main.cpp server/ops client/sdl/main.cpp client/bot/main.cpp",
      false},
-    {"nlohmann::json", "nlohmann/", "client/bot server/ops tests", false},
+    {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",
-     "server/main.cpp server/ops server/economy client/sdl client/bot common/net tests", true},
+     "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests",
+     true},
 });
 
 // Rooms in which the same calls must give the same bits: no clock, no global random numbers, no
