@@ -34,7 +34,8 @@ Scalar quantile(std::vector<Scalar>& values, double q) {
 template <typename Scalar>
 std::uint32_t CellGrid<Scalar>::Axis::cell_of(Scalar x_m) const {
     const Scalar cell = (x_m - origin_m) * cells_per_m;
-    return static_cast<std::uint32_t>(std::min(std::max(Scalar(0), cell), last_cell));
+    const Scalar inside = std::min(std::max(Scalar(0), cell), last_cell);
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
 }
 
 template <typename Scalar>
@@ -103,13 +104,15 @@ template <typename Scalar>
 void CellGrid<Scalar>::count_cells(const Discs<Scalar>& discs) {
     std::fill(first_.begin(), first_.end(), 0);
     cell_.resize(discs.count());
+    images_.clear();
     const Axis column = axis_[0], row = axis_[1];
     const std::uint32_t stride = stride_;
+    std::uint32_t *const cells = cell_.data(), *const first = first_.data();
+    const Scalar *const x = discs.x_m.data(), *const y = discs.y_m.data();
     for (std::uint32_t i = 0; i < discs.count(); ++i) {
-        const std::uint32_t cell =
-            row.cell_of(discs.y_m[i]) * stride + column.cell_of(discs.x_m[i]) + 1;
-        cell_[i] = cell;
-        ++first_[cell];
+        const std::uint32_t cell = row.cell_of(y[i]) * stride + column.cell_of(x[i]) + 1;
+        cells[i] = cell;
+        ++first[cell];
     }
 }
 
@@ -117,7 +120,6 @@ void CellGrid<Scalar>::count_cells(const Discs<Scalar>& discs) {
 // above.
 template <typename Scalar>
 void CellGrid<Scalar>::add_images(const Discs<Scalar>& discs) {
-    images_.clear();
     const std::uint32_t columns = axis_[0].cells, rows = axis_[1].cells;
     const auto add = [&](std::uint32_t disc, Scalar x_m, Scalar y_m, std::uint32_t cell) {
         images_.push_back({x_m, y_m, {disc, cell}});
@@ -144,69 +146,85 @@ void CellGrid<Scalar>::add_images(const Discs<Scalar>& discs) {
 template <typename Scalar>
 void CellGrid<Scalar>::sort(const Discs<Scalar>& discs) {
     count_cells(discs);
-    images_.clear();
     if (periodic_) add_images(discs);
-
     std::uint32_t total = 0;
     for (std::uint32_t& first : first_) first = total += first;
 
-    x_m_.resize(total + kLanes);
-    y_m_.resize(total + kLanes);
+    // What pads the last run is near to nothing.
+    constexpr Scalar kFarAway = std::numeric_limits<Scalar>::infinity();
+    for (std::vector<Scalar>* values : {&x_m_, &y_m_}) {
+        values->resize(total + kLanes);
+        std::fill(values->end() - kLanes, values->end(), kFarAway);
+    }
     placed_.resize(total + kLanes);
-    std::fill(x_m_.end() - kLanes, x_m_.end(), std::numeric_limits<Scalar>::infinity());
-    std::fill(y_m_.end() - kLanes, y_m_.end(), std::numeric_limits<Scalar>::infinity());
-    const bool equal_radii = discs.radius_m.empty();
-    if (!equal_radii) radius_m_.resize(total + kLanes);
-
-    const auto put = [&](const Image& image) {
-        const std::uint32_t to = --first_[image.placed.cell];
-        x_m_[to] = image.x_m;
-        y_m_[to] = image.y_m;
-        placed_[to] = image.placed;
-        if (!equal_radii) radius_m_[to] = discs.radius_m[image.placed.disc];
-    };
-    for (const Image& image : images_) put(image);
-    for (std::uint32_t i = discs.count(); i-- > 0;) {
-        put({discs.x_m[i], discs.y_m[i], {i, cell_[i]}});
+    if (discs.radius_m.empty()) {
+        put_into_cells<true>(discs);
+    } else {
+        radius_m_.resize(total + kLanes);
+        put_into_cells<false>(discs);
     }
 }
 
+// Every cell is filled from its end.
+template <typename Scalar>
+template <bool kEqualRadii>
+void CellGrid<Scalar>::put_into_cells(const Discs<Scalar>& discs) {
+    Scalar *const x = x_m_.data(), *const y = y_m_.data();
+    Placed* const placed = placed_.data();
+    std::uint32_t* const first = first_.data();
+    const auto put = [&](Scalar x_m, Scalar y_m, Placed what) {
+        const std::uint32_t to = --first[what.cell];
+        x[to] = x_m;
+        y[to] = y_m;
+        placed[to] = what;
+        if constexpr (!kEqualRadii) radius_m_[to] = discs.radius_m[what.disc];
+    };
+    for (const Image& image : images_) put(image.x_m, image.y_m, image.placed);
+    const std::uint32_t* const cell = cell_.data();
+    for (std::uint32_t i = discs.count(); i-- > 0;) {
+        put(discs.x_m[i], discs.y_m[i], {i, cell[i]});
+    }
+}
+
+// The first lanes of a run are always looked at, since whether a run is empty cannot be foreseen.
 template <typename Scalar>
 template <bool kEqualRadii>
 void CellGrid<Scalar>::search(Scalar reach_squared, std::vector<DiscPair>& pairs) const {
+    const Scalar *const x = x_m_.data(), *const y = y_m_.data(), *const radius = radius_m_.data();
+    const Placed* const placed = placed_.data();
+    const std::uint32_t* const first = first_.data();
+    const auto search_run = [&](std::uint32_t i, std::uint32_t j, std::uint32_t end) {
+        do {
+            std::uint32_t near;
+            if constexpr (kEqualRadii) {
+                near = near_lanes(x + j, y + j, x[i], y[i], reach_squared);
+            } else {
+                near = overlapping_lanes(x + j, y + j, radius + j, x[i], y[i], radius[i]);
+            }
+            if (near != 0) [[unlikely]]
+                add_pairs(i, j, near, end, pairs);
+            j += kLanes;
+        } while (j < end);
+    };
     for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
         const std::uint32_t left = row * stride_ + 1;
-        const std::uint32_t end = first_[left + axis_[0].cells];
-        for (std::uint32_t i = first_[left]; i < end; ++i) {
-            const std::uint32_t cell = placed_[i].cell;
-            const std::uint32_t above = cell + stride_;
-            search_run<kEqualRadii>(i, i + 1, first_[cell + 2], reach_squared, pairs);
-            search_run<kEqualRadii>(i, first_[above - 1], first_[above + 2], reach_squared, pairs);
+        const std::uint32_t end = first[left + axis_[0].cells];
+        for (std::uint32_t i = first[left]; i < end; ++i) {
+            const std::uint32_t* const here = first + placed[i].cell;
+            search_run(i, i + 1, here[2]);
+            search_run(i, here[stride_ - 1], here[stride_ + 2]);
         }
     }
 }
 
-// Always looks at the first lanes, since an empty run is not worth a branch that cannot be
-// foreseen.
+// Lanes beyond the run's end are another run's to find.
 template <typename Scalar>
-template <bool kEqualRadii>
-inline void CellGrid<Scalar>::search_run(std::uint32_t i, std::uint32_t begin, std::uint32_t end,
-                                         Scalar reach_squared, std::vector<DiscPair>& pairs) const {
-    std::uint32_t j = begin;
-    do {
-        std::uint32_t near;
-        if constexpr (kEqualRadii) {
-            near = near_lanes(&x_m_[j], &y_m_[j], x_m_[i], y_m_[i], reach_squared);
-        } else {
-            near = overlapping_lanes(&x_m_[j], &y_m_[j], &radius_m_[j], x_m_[i], y_m_[i],
-                                     radius_m_[i]);
-        }
-        for (; near != 0; near &= near - 1) {
-            const std::uint32_t other = j + static_cast<std::uint32_t>(std::countr_zero(near));
-            if (other < end) pairs.push_back({placed_[i].disc, placed_[other].disc});
-        }
-        j += kLanes;
-    } while (j < end);
+void CellGrid<Scalar>::add_pairs(std::uint32_t i, std::uint32_t begin, std::uint32_t lanes,
+                                 std::uint32_t end, std::vector<DiscPair>& pairs) const {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const std::uint32_t j = begin + static_cast<std::uint32_t>(std::countr_zero(lanes));
+        if (j < end) pairs.push_back({placed_[i].disc, placed_[j].disc});
+    }
 }
 
 template <typename Scalar>

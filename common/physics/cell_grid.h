@@ -71,10 +71,11 @@ class CellGrid {
     void count_cells(const Discs<Scalar>& discs);
     void add_images(const Discs<Scalar>& discs);
     template <bool kEqualRadii>
-    void search(Scalar reach_squared, std::vector<DiscPair>& pairs) const;
+    void put_into_cells(const Discs<Scalar>& discs);
     template <bool kEqualRadii>
-    void search_run(std::uint32_t i, std::uint32_t begin, std::uint32_t end, Scalar reach_squared,
-                    std::vector<DiscPair>& pairs) const;
+    void search(Scalar reach_squared, std::vector<DiscPair>& pairs) const;
+    void add_pairs(std::uint32_t i, std::uint32_t begin, std::uint32_t lanes, std::uint32_t end,
+                   std::vector<DiscPair>& pairs) const;
 
     Axis axis_[2];
     std::uint32_t stride_ = 3;  // cells in a row, with a column of images at each end
