@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/physics/solver_discrete.h"
+#include "common/physics/solver_event.h"
 #include "common/physics/solver_seed.h"
 #include "common/physics/solver_swept.h"
 
@@ -36,7 +37,7 @@ std::unique_ptr<Solver<Scalar>> make_solver(const SolverChoice& choice) {
         case SolverKind::kSwept:
             return make_swept_solver<Scalar>();
         case SolverKind::kEvent:
-            break;
+            return make_event_solver<Scalar>();
     }
     assert(false);
     return nullptr;

@@ -1,0 +1,468 @@
+#include "common/physics/coasting.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/physics/periodic.h"
+#include "common/physics/time_of_impact.h"
+
+namespace fts::physics {
+namespace {
+
+// Cells are wider than the largest disc by this part of it, and by so many units of the round-off
+// of coordinates, so that a body a little outside its cell is still next to all it touches.
+constexpr double kCellSlack = 1.0 / 64.0;
+constexpr double kCellRoundOff = 64.0;
+// By how many units of round-off a pair may seem to miss, or to meet too late, and still be
+// computed exactly.
+constexpr double kFilterSlack = 16.0;
+// So many bodies tell whether the cells still suit all of them.
+constexpr std::size_t kSample = 256;
+
+}  // namespace
+
+template <typename Scalar>
+void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+    model_ = model;
+    if (model_.periodic) extent_m_ = model_.periodic->extent_m();
+    now_s_ = begin_s_ = end_s_ = end_rest_s_ = 0.0;
+    flights_.assign(bodies.slots(), Flight());
+    prospects_.assign(bodies.slots(), Prospect());
+    living_.clear();
+    apart_.clear();
+    free_apart_ = kNobody;
+    calendar_.reset(bodies.slots());
+    for (const BodyId id : bodies.ids) {
+        living_.push_back(id.index);
+        Flight& flight = flights_[id.index];
+        flight.position_m = bodies.position_m[id.index];
+        flight.velocity_mps = bodies.velocity_mps[id.index];
+        flight.radius_m = bodies.radius_m[id.index];
+        prospects_[id.index].mass_kg = bodies.mass_kg[id.index];
+        prospects_[id.index].hit_s = -std::numeric_limits<double>::infinity();
+    }
+    if (model_.periodic) {
+        choose<true, false, false>();
+    } else if (model_.walls) {
+        model_.platform ? choose<false, true, true>() : choose<false, true, false>();
+    } else {
+        model_.platform ? choose<false, false, true>() : choose<false, false, false>();
+    }
+    fit_cells();
+}
+
+template <typename Scalar>
+template <bool kPeriodic, bool kWalls, bool kPlatform>
+void Coasting<Scalar>::choose() {
+    if (model_.equal_radii) {
+        using Has = Features<kPeriodic, kWalls, kPlatform, true>;
+        next_ = &Coasting::next_as<Has>;
+        predict_ = &Coasting::predict_as<Has>;
+    } else {
+        using Has = Features<kPeriodic, kWalls, kPlatform, false>;
+        next_ = &Coasting::next_as<Has>;
+        predict_ = &Coasting::predict_as<Has>;
+    }
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::fit_cells() {
+    sample_m_.clear();
+    Scalar radius = Scalar(0), coordinate = Scalar(0);
+    for (const std::uint32_t body : living_) {
+        sample_m_.push_back(position_m(body));
+        radius = std::max(radius, flights_[body].radius_m);
+        coordinate = std::max(coordinate, sample_m_.back().cwiseAbs().maxCoeff());
+    }
+    const Scalar round_off = std::numeric_limits<Scalar>::epsilon() * coordinate;
+    const Scalar width = Scalar(2) * radius * static_cast<Scalar>(1.0 + kCellSlack) +
+                         static_cast<Scalar>(kCellRoundOff) * round_off;
+    cells_.fit(sample_m_, width, model_.periodic ? model_.periodic : model_.walls,
+               model_.periodic.has_value());
+    turns_to_rebase_ = std::max(kRebaseEvery, static_cast<std::uint32_t>(living_.size()));
+    // Of each pair the later one is answerable.
+    for (const std::uint32_t body : living_) {
+        Flight& flight = flights_[body];
+        const Vec position = position_m(body);
+        for (std::uint32_t axis = 0; axis < 2; ++axis) {
+            flight.cell[axis] = cells_.cell_of(axis, position[axis]);
+        }
+        predict(body);
+        link(body);
+    }
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::begin_span(double span_s, std::uint64_t turns) {
+    // The sum of many spans to twice the precision (Knuth's two-sum), so that ticks do not add up
+    // their round-off.
+    const double ahead = span_s + end_rest_s_;
+    begin_s_ = now_s_;
+    end_s_ = now_s_ + ahead;
+    const double rounded = end_s_ - now_s_;
+    end_rest_s_ = (now_s_ - (end_s_ - rounded)) + (ahead - rounded);
+    turns_left_ = turns;
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::break_span() {
+    end_s_ = now_s_;
+    end_rest_s_ = 0.0;
+}
+
+template <typename Scalar>
+Vec2<Scalar> Coasting<Scalar>::separation_m(std::uint32_t a, std::uint32_t b) const {
+    return nearest_image<Scalar>(position_m(a) - position_m(b), model_.periodic);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::move_to_now(std::uint32_t body) {
+    set_position(body, position_m(body));
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::set_position(std::uint32_t body, const Vec& position_m) {
+    flights_[body].position_m = position_m;
+    flights_[body].since_s = now_s_;
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::turn(std::uint32_t body, const Vec& velocity_mps) {
+    prospects_[body].hit_s = now_s_;
+    if (is_immovable(body)) return;
+    assert(flights_[body].since_s == now_s_);
+    flights_[body].velocity_mps = velocity_mps;
+    ++flights_[body].events;
+    prospects_[body].sides_kept_off = 0;
+    forget_apart(body);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::keep_off_wall(std::uint32_t body, std::uint32_t side) {
+    prospects_[body].sides_kept_off |= static_cast<std::uint8_t>(1U << side);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::keep_apart(std::uint32_t a, std::uint32_t b) {
+    if (is_immovable(a)) std::swap(a, b);
+    Apart apart{b, flights_[b].events, 0, 0, prospects_[a].apart};
+    if (model_.periodic) {
+        const Vec apart_m = position_m(a) - position_m(b);
+        const auto boxes = [&](int axis) {
+            const Scalar count = std::round(apart_m[axis] / extent_m_[axis]);
+            return static_cast<std::uint32_t>(static_cast<std::int32_t>(count));
+        };
+        apart.image_x = boxes(0) + prospects_[a].turns_x - prospects_[b].turns_x;
+        apart.image_y = boxes(1) + prospects_[a].turns_y - prospects_[b].turns_y;
+    }
+    if (free_apart_ == kNobody) {
+        prospects_[a].apart = static_cast<std::uint32_t>(apart_.size());
+        apart_.push_back(apart);
+        return;
+    }
+    const std::uint32_t place = free_apart_;
+    free_apart_ = apart_[place].next;
+    apart_[place] = apart;
+    prospects_[a].apart = place;
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::forget_apart(std::uint32_t body) {
+    std::uint32_t& first = prospects_[body].apart;
+    while (first != kNobody) {
+        const std::uint32_t freed = first;
+        first = apart_[freed].next;
+        apart_[freed].next = free_apart_;
+        free_apart_ = freed;
+    }
+}
+
+template <typename Scalar>
+bool Coasting<Scalar>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const {
+    const auto a_has_b = [&](std::uint32_t one, std::uint32_t other, int x, int y) {
+        const Prospect &mine = prospects_[one], &its = prospects_[other];
+        for (std::uint32_t place = mine.apart; place != kNobody; place = apart_[place].next) {
+            const Apart& apart = apart_[place];
+            if (apart.other == other && apart.other_events == flights_[other].events &&
+                apart.image_x == static_cast<std::uint32_t>(x) + mine.turns_x - its.turns_x &&
+                apart.image_y == static_cast<std::uint32_t>(y) + mine.turns_y - its.turns_y) {
+                return true;
+            }
+        }
+        return false;
+    };
+    return a_has_b(a, b, image.x, image.y) || a_has_b(b, a, -image.x, -image.y);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::remove(std::uint32_t body) {
+    unlink(body);
+    forget_apart(body);
+    calendar_.remove(body);
+    ++flights_[body].events;
+    living_.erase(std::lower_bound(living_.begin(), living_.end(), body));
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::link(std::uint32_t body) {
+    Flight& flight = flights_[body];
+    std::uint32_t& first = cells_.first(flight.cell[0], flight.cell[1]);
+    flight.next = first;
+    first = body;
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::unlink(std::uint32_t body) {
+    const Flight& flight = flights_[body];
+    std::uint32_t* at = &cells_.first(flight.cell[0], flight.cell[1]);
+    while (*at != body) at = &flights_[*at].next;
+    *at = flight.next;
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::enter_in_calendar(std::uint32_t body) {
+    const Prospect& prospect = prospects_[body];
+    calendar_.set(body, std::min(prospect.meeting_s, prospect.border_s));
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::rebase() {
+    turns_to_rebase_ = std::max(kRebaseEvery, static_cast<std::uint32_t>(living_.size()));
+    // The greatest power of two that is not above now.
+    constexpr std::uint64_t kExponent = 0x7ff0000000000000;
+    const double shift_s = std::bit_cast<double>(std::bit_cast<std::uint64_t>(now_s_) & kExponent);
+    for (const std::uint32_t body : living_) {
+        flights_[body].since_s -= shift_s;
+        prospects_[body].meeting_s -= shift_s;
+        prospects_[body].border_s -= shift_s;
+        prospects_[body].hit_s -= shift_s;
+    }
+    calendar_.rebase(shift_s);
+    now_s_ -= shift_s;
+    begin_s_ -= shift_s;
+    end_s_ -= shift_s;
+    if (model_.periodic) return;
+    sample_m_.clear();
+    const std::size_t stride = living_.size() / kSample + 1;
+    for (std::size_t i = 0; i < living_.size(); i += stride) {
+        sample_m_.push_back(position_m(living_[i]));
+    }
+    if (!cells_.still_suits(sample_m_)) fit_cells();
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
+    for (const std::uint32_t body : living_) {
+        const Vec position = position_m(body);
+        bodies.position_m[body] =
+            model_.periodic ? wrapped<Scalar>(position, *model_.periodic) : position;
+        bodies.velocity_mps[body] = flights_[body].velocity_mps;
+    }
+}
+
+template <typename Scalar>
+template <typename Has>
+Due Coasting<Scalar>::next_as() {
+    for (;;) {
+        const Calendar::Entry first = calendar_.top();
+        if (!(first.time_s <= end_s_)) return {};
+        if (turns_left_ == 0) return {Happening::kUnfinished, now_s_, 0, 0};
+        --turns_left_;
+        if (turns_to_rebase_-- == 0) {
+            advance_to(first.time_s);
+            rebase();
+            continue;
+        }
+        const Prospect& prospect = prospects_[first.body];
+        if (prospect.meeting_s <= prospect.border_s) {
+            if (holds(prospect)) {
+                return {Happening::kMeeting, first.time_s, first.body, prospect.with};
+            }
+            advance_to(first.time_s);
+            expect_meeting<Has>(first.body);
+            enter_in_calendar(first.body);
+        } else if (prospect.border == Border::kCell) {
+            advance_to(first.time_s);
+            cross<Has>(first.body);
+        } else {
+            const bool falls = Has::kPlatform && prospect.border == Border::kFall;
+            return {falls ? Happening::kFall : Happening::kWall, first.time_s, first.body,
+                    prospect.side};
+        }
+    }
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::predict_as(std::uint32_t body) {
+    expect_meeting<Has>(body);
+    expect_border<Has>(body);
+    enter_in_calendar(body);
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::expect_meeting(std::uint32_t body) {
+    Meeting best{kNever<double>, kNobody};
+    look<Has>(body, View(), best);
+    expect(body, best);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::expect(std::uint32_t body, const Meeting& meeting) {
+    Prospect& prospect = prospects_[body];
+    prospect.meeting_s = meeting.time_s;
+    prospect.with = meeting.with;
+    if (meeting.with != kNobody) prospect.with_events = flights_[meeting.with].events;
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) const {
+    const Flight& self = flights_[body];
+    if constexpr (Has::kPeriodic) {
+        if (is_at_border(self)) {
+            for_each_cell_across(self, view, [&](std::uint32_t first, Image image) {
+                look_into<Has, true>(first, body, image, best);
+            });
+            return;
+        }
+    }
+    const std::uint32_t* row =
+        cells_.corner_of(self.cell[0], self.cell[1]) + view.y0 * cells_.stride();
+    for (std::uint32_t y = view.y0; y <= view.y1; ++y, row += cells_.stride()) {
+        for (std::uint32_t x = view.x0; x <= view.x1; ++x) {
+            if (row[x] != kNobody) look_into<Has, false>(row[x], body, Image(), best);
+        }
+    }
+}
+
+template <typename Scalar>
+template <typename Has, bool kAcross>
+void Coasting<Scalar>::look_into(std::uint32_t first, std::uint32_t body, Image image,
+                                 Meeting& best) const {
+    constexpr Scalar kSlack =
+        Scalar(1) + static_cast<Scalar>(kFilterSlack) * std::numeric_limits<Scalar>::epsilon();
+    const Flight self = flights_[body];
+    for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
+        const Flight& it = flights_[other];
+        const double from_s = std::max(self.since_s, it.since_s);
+        Vec apart = position_at(self, from_s) - position_at(it, from_s);
+        if constexpr (kAcross) {
+            apart.x() -= extent_m_.x() * static_cast<Scalar>(image.x);
+            apart.y() -= extent_m_.y() * static_cast<Scalar>(image.y);
+        }
+        const Vec velocity = self.velocity_mps - it.velocity_mps;
+        const Scalar rate = apart.dot(velocity);
+        if (!(rate < Scalar(0))) continue;
+        const Scalar reach =
+            Has::kEqualRadii ? Scalar(2) * self.radius_m : self.radius_m + it.radius_m;
+        const Scalar reach_squared = reach * reach;
+        const Scalar aside = apart.x() * velocity.y() - apart.y() * velocity.x();
+        if (aside * aside >
+            kSlack * reach_squared * velocity.squaredNorm() + std::numeric_limits<Scalar>::min()) {
+            continue;
+        }
+        // It takes at least the time of a head-on approach.
+        const Scalar known_best = static_cast<Scalar>(best.time_s - from_s);
+        if (apart.squaredNorm() - reach_squared > Scalar(-2) * kSlack * rate * known_best) continue;
+        const double time_s = std::max(
+            now_s_,
+            from_s + static_cast<double>(time_until_contact<Scalar>(apart, velocity, reach)));
+        if (time_s > best.time_s || (time_s == best.time_s && other >= best.with)) continue;
+        if (is_immovable(body) && is_immovable(other)) continue;
+        if (are_kept_apart(body, other, image)) continue;
+        best = {time_s, other};
+    }
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::expect_border(std::uint32_t body) {
+    const Flight& flight = flights_[body];
+    Prospect& prospect = prospects_[body];
+    prospect.border = Border::kNone;
+    prospect.border_s = kNever<double>;
+    const auto offer = [&](Scalar wait_s, Border border, std::uint32_t side) {
+        const double time_s = std::max(now_s_, flight.since_s + static_cast<double>(wait_s));
+        if (!(time_s < prospect.border_s)) return;
+        prospect.border_s = time_s;
+        prospect.border = border;
+        prospect.side = static_cast<std::uint8_t>(side);
+    };
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        const Scalar speed = flight.velocity_mps[axis], position = flight.position_m[axis];
+        if (speed == Scalar(0)) continue;
+        const bool up = speed > Scalar(0);
+        const std::uint32_t cell = flight.cell[axis], side = 2 * axis + (up ? 1U : 0U);
+        const bool outermost = cell == (up ? cells_.last(axis) : 0);
+        if (Has::kPeriodic || !outermost) {
+            const Scalar edge = cells_.edge_m(axis, up ? cell + 1 : cell);
+            offer(time_until_wall(up ? edge - position : position - edge, std::abs(speed)),
+                  Border::kCell, side);
+        } else if (Has::kWalls && !is_immovable(body) &&
+                   (prospect.sides_kept_off >> side & 1U) == 0) {
+            const Scalar gap = up ? (model_.walls->max_m[axis] - flight.radius_m) - position
+                                  : position - (model_.walls->min_m[axis] + flight.radius_m);
+            offer(time_until_wall(gap, std::abs(speed)), Border::kWall, side);
+        }
+    }
+    if constexpr (Has::kPlatform) {
+        offer(time_until_edge<Scalar>(*model_.platform, flight.position_m, flight.velocity_mps),
+              Border::kFall, 0);
+    }
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::cross(std::uint32_t body) {
+    Flight& flight = flights_[body];
+    const Prospect& prospect = prospects_[body];
+    const std::uint32_t axis = prospect.side / 2;
+    const bool up = prospect.side % 2 == 1;
+    const bool knows_meeting = holds(prospect);
+    unlink(body);
+    if (Has::kPeriodic && flight.cell[axis] == (up ? cells_.last(axis) : 0)) {
+        go_round(body, axis, up);
+    } else {
+        up ? ++flight.cell[axis] : --flight.cell[axis];
+    }
+    link(body);
+    if (knows_meeting) {
+        View view;
+        (axis == 0 ? view.x0 : view.y0) = up ? 2 : 0;
+        (axis == 0 ? view.x1 : view.y1) = up ? 2 : 0;
+        Meeting best{prospect.meeting_s, prospect.with};
+        look<Has>(body, view, best);
+        expect(body, best);
+    } else {
+        expect_meeting<Has>(body);
+    }
+    expect_border<Has>(body);
+    enter_in_calendar(body);
+}
+
+template <typename Scalar>
+void Coasting<Scalar>::go_round(std::uint32_t body, std::uint32_t axis, bool up) {
+    move_to_now(body);
+    Flight& flight = flights_[body];
+    Prospect& prospect = prospects_[body];
+    std::uint32_t& turns = axis == 0 ? prospect.turns_x : prospect.turns_y;
+    if (up) {
+        flight.position_m[axis] -= extent_m_[axis];
+        flight.cell[axis] = 0;
+        ++turns;
+    } else {
+        flight.position_m[axis] += extent_m_[axis];
+        flight.cell[axis] = cells_.last(axis);
+        --turns;
+    }
+}
+
+template class Coasting<double>;
+template class Coasting<float>;
+
+}  // namespace fts::physics

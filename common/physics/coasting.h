@@ -1,0 +1,272 @@
+// Bodies in straight flight, and what will happen to each of them first: predicted once, kept until
+// something else happens. What an event does to velocities is not known here (solver_event.h).
+//
+// Every body has one entry in the calendar, the earliest of the meetings, walls, falls and cell
+// borders ahead of it. A body that is predicted looks at the bodies in its cell and the eight
+// around it; whoever of a pair was predicted last is answerable for their meeting. A meeting is
+// void once something has happened to the other body, which shows when it is due: then a new one is
+// looked for. A body that enters a cell only looks into the three cells that came into view, as
+// long as the meeting it knows of holds.
+//
+// When two bodies meet is a function of their last events alone, (position, velocity, time) of
+// each, however late and from whichever cells it is asked. So neither the cells nor the length of
+// ticks show in the bits of a trajectory. What recedes never meets; what overlaps and approaches
+// meets now.
+//
+// Two bodies that an event left together, receding or at rest to each other but for round-off, are
+// kept apart: they are not predicted to meet again before something happens to one of them. In a
+// periodic scene this is said of one image, and they may meet through another.
+//
+// Time is double, whatever the scalar, and counted from an epoch that moves on: see kRebaseEvery.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "common/physics/bodies.h"
+#include "common/physics/calendar.h"
+#include "common/physics/event_cells.h"
+#include "common/physics/solver.h"
+
+namespace fts::physics {
+
+// The epoch moves on after as many entries of the calendar as there are bodies, and at least so
+// many, which makes its cost for each a constant. Until then nobody has flown farther than over
+// some of the cells, so that times are as fine as positions are, for any number of collisions. It
+// moves by powers of two, so that times to come stay exact.
+inline constexpr std::uint32_t kRebaseEvery = 64;
+
+enum class Happening : std::uint8_t {
+    kNothing,     // before the end of the span
+    kMeeting,     // of `body` and `other`
+    kWall,        // `other` is the side: -x, +x, -y, +y
+    kFall,        // `body` leaves the platform
+    kUnfinished,  // the turns allowed were used up before the end of the span
+};
+
+struct Due {
+    Happening what = Happening::kNothing;
+    double time_s = 0.0;
+    std::uint32_t body = 0;
+    std::uint32_t other = 0;
+};
+
+template <typename Scalar>
+class Coasting {
+  public:
+    using Vec = Vec2<Scalar>;
+    static constexpr std::uint32_t kNobody = EventCells<Scalar>::kNobody;
+
+    // What must be read of a body to predict others.
+    struct alignas(64) Flight {
+        Vec position_m = Vec::Zero();  // at `since_s`
+        Vec velocity_mps = Vec::Zero();
+        double since_s = 0.0;
+        Scalar radius_m = Scalar(0);
+        std::uint32_t next = kNobody;  // in its cell
+        std::uint32_t events = 0;
+        std::uint32_t cell[2] = {0, 0};
+    };
+    static_assert(sizeof(Flight) == 64);
+
+    // Takes over all living bodies, and predicts.
+    void begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model);
+
+    // A span begins where the last one ended. `turns`: so many entries of the calendar may come up.
+    void begin_span(double span_s, std::uint64_t turns);
+    // What is due next; it stays due until its bodies are told of it.
+    Due next() { return (this->*next_)(); }
+    // Time goes on to a moment, not beyond what is due.
+    void advance_to(double time_s) { now_s_ = std::max(now_s_, time_s); }
+    // The span ends where it was to end, or now.
+    void end_span() { now_s_ = end_s_; }
+    void break_span();
+
+    double since_begin_s() const { return now_s_ - begin_s_; }
+    double until_end_s() const { return end_s_ - now_s_; }
+    double clock_s() const { return now_s_; }  // since the epoch
+    double flown_s(std::uint32_t body) const { return now_s_ - flights_[body].since_s; }
+    double last_hit_ago_s(std::uint32_t body) const { return now_s_ - prospects_[body].hit_s; }
+
+    const Flight& flight(std::uint32_t body) const { return flights_[body]; }
+    Scalar mass_kg(std::uint32_t body) const { return prospects_[body].mass_kg; }
+    Vec position_m(std::uint32_t body) const { return position_at(flights_[body], now_s_); }
+    // From b, or its nearest image, to a; now.
+    Vec separation_m(std::uint32_t a, std::uint32_t b) const;
+
+    // The body is where it is now, and flies on from there.
+    void move_to_now(std::uint32_t body);
+    void set_position(std::uint32_t body, const Vec& position_m);
+    // Something happened to the body, which must be moved to now: all that was predicted for it is
+    // void, and it is kept apart from nobody. It must be predicted before the next `next`. An
+    // immovable body flies on as if nothing had happened.
+    void turn(std::uint32_t body, const Vec& velocity_mps);
+    // To be called after `turn` and before `predict`, of what touches. Not both are immovable.
+    void keep_apart(std::uint32_t a, std::uint32_t b);
+    void keep_off_wall(std::uint32_t body, std::uint32_t side);
+    bool is_immovable(std::uint32_t body) const { return std::isinf(prospects_[body].mass_kg); }
+    void predict(std::uint32_t body) { (this->*predict_)(body); }
+    void remove(std::uint32_t body);
+
+    // Calls visit(other) for every body in the cells about that of `body`, itself included, once
+    // for each image.
+    template <typename Visit>
+    void for_each_near(std::uint32_t body, Visit&& visit) const;
+
+    void write_to(Bodies<Scalar>& bodies) const;
+
+  private:
+    enum class Border : std::uint8_t { kNone, kCell, kWall, kFall };
+
+    // What else is known of a body.
+    struct Prospect {
+        double meeting_s = 0.0;
+        double border_s = 0.0;
+        double hit_s = 0.0;  // the last event
+        Scalar mass_kg = Scalar(0);
+        std::uint32_t with = kNobody;   // whom it meets
+        std::uint32_t with_events = 0;  // what had happened to that one when this was predicted
+        std::uint32_t apart = kNobody;  // the first in its list of those it is kept apart from
+        std::uint32_t turns_x = 0;      // how often it went round a periodic box, modulo 2^32
+        std::uint32_t turns_y = 0;
+        Border border = Border::kNone;
+        std::uint8_t side = 0;
+        std::uint8_t sides_kept_off = 0;  // a bit for each
+    };
+    struct Apart {
+        std::uint32_t other;
+        std::uint32_t other_events;
+        std::uint32_t image_x, image_y;  // of the other, counted where both once were
+        std::uint32_t next;
+    };
+    struct Meeting {
+        double time_s;
+        std::uint32_t with;
+    };
+    struct Image {  // of a neighbour: so many boxes away
+        int x = 0, y = 0;
+    };
+    // Of the nine cells about a body's own, counted from the lowest corner.
+    struct View {
+        std::uint32_t x0 = 0, x1 = 2, y0 = 0, y1 = 2;
+    };
+    template <bool kIsPeriodic, bool kHasWalls, bool kHasPlatform, bool kHasEqualRadii>
+    struct Features {
+        static constexpr bool kPeriodic = kIsPeriodic;
+        static constexpr bool kWalls = kHasWalls;
+        static constexpr bool kPlatform = kHasPlatform;
+        static constexpr bool kEqualRadii = kHasEqualRadii;
+    };
+
+    template <bool kPeriodic, bool kWalls, bool kPlatform>
+    void choose();
+    void fit_cells();
+    void link(std::uint32_t body);
+    void unlink(std::uint32_t body);
+    void forget_apart(std::uint32_t body);
+    bool are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const;
+    bool holds(const Prospect& prospect) const {
+        return prospect.with == kNobody || flights_[prospect.with].events == prospect.with_events;
+    }
+    void rebase();
+    void enter_in_calendar(std::uint32_t body);
+
+    template <typename Has>
+    Due next_as();
+    template <typename Has>
+    void predict_as(std::uint32_t body);
+    template <typename Has>
+    void expect_meeting(std::uint32_t body);
+    template <typename Has>
+    void expect_border(std::uint32_t body);
+    template <typename Has>
+    void look(std::uint32_t body, const View& view, Meeting& best) const;
+    template <typename Has, bool kAcross>
+    void look_into(std::uint32_t first, std::uint32_t body, Image image, Meeting& best) const;
+    template <typename Has>
+    void cross(std::uint32_t body);
+    void expect(std::uint32_t body, const Meeting& meeting);
+    void go_round(std::uint32_t body, std::uint32_t axis, bool up);
+    bool is_at_border(const Flight& flight) const {
+        const auto is_inside = [&](std::uint32_t axis) {
+            return flight.cell[axis] > 0 && flight.cell[axis] < cells_.last(axis);
+        };
+        return !is_inside(0) || !is_inside(1);
+    }
+    // Calls visit(first body, image) for every cell of the view, in a periodic box.
+    template <typename Visit>
+    void for_each_cell_across(const Flight& self, const View& view, Visit&& visit) const;
+
+    static Vec position_at(const Flight& flight, double time_s) {
+        const Scalar since = static_cast<Scalar>(time_s - flight.since_s);
+        return {flight.position_m.x() + flight.velocity_mps.x() * since,
+                flight.position_m.y() + flight.velocity_mps.y() * since};
+    }
+
+    Model<Scalar> model_;
+    Vec extent_m_ = Vec::Zero();  // of the periodic box
+    double now_s_ = 0.0;
+    double begin_s_ = 0.0, end_s_ = 0.0, end_rest_s_ = 0.0;  // of the span
+    std::uint64_t turns_left_ = 0;
+    std::uint32_t turns_to_rebase_ = 0;
+    Due (Coasting::*next_)() = nullptr;
+    void (Coasting::*predict_)(std::uint32_t) = nullptr;
+
+    std::vector<Flight> flights_;  // by body, as are the next
+    std::vector<Prospect> prospects_;
+    std::vector<std::uint32_t> living_;  // ascending
+    std::vector<Apart> apart_;
+    std::uint32_t free_apart_ = kNobody;
+    Calendar calendar_;
+    EventCells<Scalar> cells_;
+    std::vector<Vec> sample_m_;
+};
+
+template <typename Scalar>
+template <typename Visit>
+void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) const {
+    const auto visit_all = [&](std::uint32_t first, Image) {
+        for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
+            visit(other);
+        }
+    };
+    const Flight& self = flights_[body];
+    if (model_.periodic && is_at_border(self)) {
+        for_each_cell_across(self, View(), visit_all);
+        return;
+    }
+    const std::uint32_t* row = cells_.corner_of(self.cell[0], self.cell[1]);
+    for (std::uint32_t y = 0; y < 3; ++y, row += cells_.stride()) {
+        for (std::uint32_t x = 0; x < 3; ++x) visit_all(row[x], Image());
+    }
+}
+
+template <typename Scalar>
+template <typename Visit>
+void Coasting<Scalar>::for_each_cell_across(const Flight& self, const View& view,
+                                            Visit&& visit) const {
+    struct Place {
+        std::uint32_t cell;
+        int image;
+    };
+    const auto place = [&](std::uint32_t axis, std::uint32_t step) -> Place {
+        const std::uint32_t last = cells_.last(axis), cell = self.cell[axis];
+        if (step == 0 && cell == 0) return {last, -1};
+        if (step == 2 && cell == last) return {0, 1};
+        return {cell + step - 1, 0};
+    };
+    for (std::uint32_t y = view.y0; y <= view.y1; ++y) {
+        const Place row = place(1, y);
+        for (std::uint32_t x = view.x0; x <= view.x1; ++x) {
+            const Place column = place(0, x);
+            visit(cells_.first(column.cell, row.cell), Image{column.image, row.image});
+        }
+    }
+}
+
+extern template class Coasting<double>;
+extern template class Coasting<float>;
+
+}  // namespace fts::physics

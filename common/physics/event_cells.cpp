@@ -1,0 +1,107 @@
+#include "common/physics/event_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fts::physics {
+namespace {
+
+// Outliers beyond these do not stretch the grid; a uniform crowd lies wholly within the widened
+// range.
+constexpr double kLowQuantile = 0.05;
+constexpr double kHighQuantile = 0.95;
+constexpr double kWiden = 0.1;
+
+// Another grid is worth its making when the crowd's extent has changed by this factor, or it has
+// moved by this part of its extent.
+constexpr double kSpread = 1.5;
+constexpr double kMoved = 0.25;
+
+template <typename Scalar>
+Scalar quantile(std::vector<Scalar>& values, double q) {
+    const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+}  // namespace
+
+template <typename Scalar>
+auto EventCells<Scalar>::range_of(std::uint32_t axis, std::span<const Vec2<Scalar>> positions_m)
+    -> Range {
+    if (positions_m.empty()) return {};
+    scratch_.clear();
+    for (const Vec2<Scalar>& position : positions_m) scratch_.push_back(position[axis]);
+    const Scalar low = quantile(scratch_, kLowQuantile);
+    const Scalar high = quantile(scratch_, kHighQuantile);
+    const Scalar margin = static_cast<Scalar>(kWiden) * (high - low);
+    return {low - margin, high + margin};
+}
+
+template <typename Scalar>
+void EventCells<Scalar>::divide(Axis& axis, const Range& range, Scalar width_m,
+                                std::size_t bodies) {
+    const Scalar extent = range.high_m - range.low_m;
+    const Scalar most = static_cast<Scalar>(std::max<std::size_t>(bodies, 1));
+    const Scalar wanted = width_m > Scalar(0) ? extent / width_m : Scalar(1);
+    const Scalar cells = std::max(Scalar(1), std::floor(std::min(wanted, most)));
+    axis.origin_m = range.low_m;
+    axis.width_m = extent / cells;
+    axis.last = static_cast<std::uint32_t>(cells) - 1;
+    axis.cells_per_m = axis.last == 0 ? Scalar(0) : cells / extent;
+}
+
+template <typename Scalar>
+void EventCells<Scalar>::fit(std::span<const Vec2<Scalar>> positions_m, Scalar least_width_m,
+                             const std::optional<typename Model<Scalar>::Box>& bounds,
+                             bool periodic) {
+    Range range[2];
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        axis_[axis].fitted = range[axis] = range_of(axis, positions_m);
+        if (!bounds) continue;
+        const Range bound{bounds->min_m[axis], bounds->max_m[axis]};
+        if (periodic) range[axis] = bound;
+        range[axis].low_m = std::clamp(range[axis].low_m, bound.low_m, bound.high_m);
+        range[axis].high_m = std::clamp(range[axis].high_m, bound.low_m, bound.high_m);
+    }
+    // A cell for each body, where bodies are small.
+    const Scalar area = (range[0].high_m - range[0].low_m) * (range[1].high_m - range[1].low_m);
+    const Scalar room = area / static_cast<Scalar>(positions_m.size() + 1);
+    const Scalar width = std::max(least_width_m, std::sqrt(room));
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        divide(axis_[axis], range[axis], width, positions_m.size());
+    }
+    stride_ = axis_[0].last + 3;
+    first_.assign(std::size_t{stride_} * (axis_[1].last + 3), kNobody);
+}
+
+template <typename Scalar>
+bool EventCells<Scalar>::still_suits(std::span<const Vec2<Scalar>> sample_m) {
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        const Range now = range_of(axis, sample_m);
+        const Range& then = axis_[axis].fitted;
+        const Scalar extent_now = now.high_m - now.low_m;
+        const Scalar extent_then = then.high_m - then.low_m;
+        const Scalar longer = std::max(extent_now, extent_then);
+        if (longer <= Scalar(2) * axis_[axis].width_m) continue;
+        if (longer > static_cast<Scalar>(kSpread) * std::min(extent_now, extent_then)) return false;
+        const Scalar moved =
+            std::max(std::abs(now.low_m - then.low_m), std::abs(now.high_m - then.high_m));
+        if (moved > static_cast<Scalar>(kMoved) * longer) return false;
+    }
+    return true;
+}
+
+template <typename Scalar>
+std::uint32_t EventCells<Scalar>::cell_of(std::uint32_t axis, Scalar x_m) const {
+    const Axis& along = axis_[axis];
+    const Scalar cell = (x_m - along.origin_m) * along.cells_per_m;
+    if (!(cell > Scalar(0))) return 0;
+    if (cell >= static_cast<Scalar>(along.last)) return along.last;
+    return static_cast<std::uint32_t>(cell);
+}
+
+template class EventCells<double>;
+template class EventCells<float>;
+
+}  // namespace fts::physics
