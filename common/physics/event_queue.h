@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <tuple>
@@ -13,7 +14,13 @@ namespace fts::physics {
 
 enum class EventKind : std::uint8_t { kBall, kWall, kFall };
 
-template <typename Scalar>
+// Which image of one body meets another one, where there is but one.
+struct OnlyImage {
+    OnlyImage operator-() const { return {}; }
+    friend auto operator<=>(const OnlyImage&, const OnlyImage&) = default;
+};
+
+template <typename Scalar, typename Image = OnlyImage>
 struct Event {
     Scalar time_s;
     EventKind kind;
@@ -21,32 +28,36 @@ struct Event {
     std::uint32_t b;        // the other ball, or the side of the box: -x, +x, -y, +y
     std::uint32_t count_a;  // what had happened to `a` when this was predicted
     std::uint32_t count_b;
+    [[no_unique_address]] Image image = {};
 
     bool operator>(const Event& other) const {
-        return std::tie(time_s, kind, a, b) > std::tie(other.time_s, other.kind, other.a, other.b);
+        return std::tie(time_s, kind, a, b, image) >
+               std::tie(other.time_s, other.kind, other.a, other.b, other.image);
     }
 };
 
-template <typename Scalar>
+template <typename Event>
 class EventQueue {
   public:
     bool empty() const { return heap_.empty(); }
     void clear() { heap_.clear(); }
 
-    void push(const Event<Scalar>& event) {
+    void push(const Event& event) {
         heap_.push_back(event);
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
     }
 
-    Event<Scalar> pop() {
+    const Event& next() const { return heap_.front(); }
+
+    Event pop() {
         std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-        const Event<Scalar> event = heap_.back();
+        const Event event = heap_.back();
         heap_.pop_back();
         return event;
     }
 
   private:
-    std::vector<Event<Scalar>> heap_;
+    std::vector<Event> heap_;
 };
 
 }  // namespace fts::physics

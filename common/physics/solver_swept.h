@@ -16,6 +16,16 @@
 // the TC model of Luding and McNamara, "How to handle the inelastic collapse of a dissipative
 // hard-sphere gas" (1998).
 //
+// When anything else touches the two of a collision, or is due at the same instant and touches
+// them, all such contacts are resolved as a set (simultaneous.h); a pair alone keeps its closed
+// form, and its bits.
+//
+// In a periodic scene a pair is predicted once for each image of the one that may meet the other.
+// The span is cut into stretches in which nobody moves by more than a quarter of the box, so that
+// few images come into question, and positions are brought back into the box after each; a
+// collision that makes somebody faster cuts the stretch it happens in. A span that needs more than
+// kMaxStretches is not simulated to its end, and that is reported as an overrun.
+//
 // The number of events of one drift is bounded by event_budget(). When more are due the drift stops
 // at the time of the last one processed, at which nothing overlaps, and says so. Only what truly
 // never ends does that: a ball that exactly fills the room between two infinite masses, or is
@@ -32,6 +42,8 @@ namespace fts::physics {
 
 inline constexpr std::uint32_t kBaseEventBudget = 4096;
 inline constexpr std::uint32_t kEventBudgetPerBody = 64;
+
+inline constexpr std::uint32_t kMaxStretches = 1U << 18;
 
 std::uint32_t event_budget(std::size_t bodies);
 

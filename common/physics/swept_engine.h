@@ -1,0 +1,118 @@
+// The working parts of the swept solver (see solver_swept.h), for one kind of space. Not for
+// others.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "common/physics/broadphase.h"
+#include "common/physics/event_queue.h"
+#include "common/physics/simultaneous.h"
+#include "common/physics/solver.h"
+#include "common/physics/swept_space.h"
+
+namespace fts::physics {
+
+template <typename Scalar, typename Space>
+class SweptEngine {
+  public:
+    DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
+                              Record<Scalar>& record);
+
+  private:
+    using Vec = Vec2<Scalar>;
+    using Image = typename Space::Image;
+    using Happening = Event<Scalar, Image>;
+    struct Partner {
+        std::uint32_t body = kNoBody;
+        [[no_unique_address]] Image image = {};
+        friend bool operator==(const Partner&, const Partner&) = default;
+    };
+
+    // When: swept_engine.cpp.
+    void begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
+               Record<Scalar>& record);
+    void begin_stretch();
+    bool run_stretch();
+    void end_stretch(Scalar time_s);
+    Scalar stretch_end() const;
+    void shorten_stretch(std::uint32_t body);
+    void place(std::uint32_t body, const Box<Scalar>& box);
+    void predict_everybody();
+    template <bool kAfterSet>
+    void predict(std::uint32_t body, const Box<Scalar>& box);
+    void predict_pair(std::uint32_t a, std::uint32_t b, Image image);
+    template <bool kAfterSet>
+    void predict_walls(std::uint32_t body);
+    void predict_fall(std::uint32_t body);
+    void expect(const Happening& event);
+    bool is_stale(const Happening& event) const;
+    void place_and_predict(std::uint32_t body);
+    void place_and_predict_set();
+
+    // What: swept_collisions.cpp. How many collisions and falls there were.
+    std::uint32_t process(const Happening& event);
+    std::uint32_t collide_pair(const Happening& event);
+    std::uint32_t collide_wall(const Happening& event);
+    void fall(std::uint32_t body);
+    void after_event(std::uint32_t body, const Partner& partner);
+    void touch(std::uint32_t a, std::uint32_t b, Image image);
+
+    // Several at once: swept_sets.cpp.
+    bool is_touched_by_others(const Happening& event);
+    std::uint32_t collide_set(const Happening& event);
+    bool join_set(const Happening& event);
+    void gather_simultaneous();
+    void look_around(std::uint32_t body);
+    template <typename Visit>
+    void for_each_touching(std::uint32_t body, Visit&& visit);
+    template <typename Visit>
+    void for_each_touched_wall(std::uint32_t body, Visit&& visit) const;
+    Scalar extent_m(std::uint32_t body) const;
+    void add_to_set(std::uint32_t body);
+
+    Vec position_at(std::uint32_t body, Scalar time_s) const {
+        const Vec& position = bodies_->position_m[body];
+        const Vec& velocity = bodies_->velocity_mps[body];
+        const Scalar since_s = time_s - time_s_[body];
+        return {position.x() + velocity.x() * since_s, position.y() + velocity.y() * since_s};
+    }
+    void move_to(std::uint32_t body, Scalar time_s) {
+        bodies_->position_m[body] = position_at(body, time_s);
+        time_s_[body] = time_s;
+    }
+    // From b to the image of a.
+    Vec separation_now(std::uint32_t a, std::uint32_t b, Image image) const {
+        return space_.moved(position_at(a, now_s_), image) - position_at(b, now_s_);
+    }
+    Box<Scalar> swept_box(std::uint32_t body) const;
+    bool is_immovable(std::uint32_t body) const { return std::isinf(bodies_->mass_kg[body]); }
+    bool was_just_hit(std::uint32_t body) const;
+    Scalar restitution_of(bool just_hit) const {
+        return just_hit ? Scalar(1) : model_->restitution;
+    }
+
+    Space space_;
+    Bodies<Scalar>* bodies_ = nullptr;
+    const Model<Scalar>* model_ = nullptr;
+    Record<Scalar>* record_ = nullptr;
+    DriftReport<Scalar> report_;
+    std::uint32_t budget_ = 0;
+    Scalar span_s_ = Scalar(0);
+    Scalar until_s_ = Scalar(0);  // the end of the present stretch, within the span
+    Scalar now_s_ = Scalar(0);
+
+    std::vector<Scalar> time_s_;        // by body: when its position holds
+    std::vector<std::uint32_t> count_;  // by body: events so far
+    std::vector<Partner> partner_;      // by body: whom it hit last, if nothing happened since
+    std::vector<Scalar> hit_s_;         // by body: the last collision
+    std::vector<Box<Scalar>> boxes_;
+    EventQueue<Happening> queue_;
+    Broadphase<Scalar> broadphase_;
+    ContactSet<Scalar> set_;
+    std::vector<Happening> not_in_set_;
+};
+
+}  // namespace fts::physics

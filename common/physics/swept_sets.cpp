@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/physics/hit_record.h"
+#include "common/physics/swept_engine.h"
+
+namespace fts::physics {
+namespace {
+
+// In units of the span's round-off: what is due within that is due at the same instant.
+constexpr double kSameInstant = 8.0;
+
+template <typename Scalar>
+Scalar largest(const Vec2<Scalar>& v) {
+    return std::max(std::abs(v.x()), std::abs(v.y()));
+}
+
+}  // namespace
+
+// The largest length that goes into where a body is within the span.
+template <typename Scalar, typename Space>
+Scalar SweptEngine<Scalar, Space>::extent_m(std::uint32_t body) const {
+    return largest(bodies_->position_m[body]) + largest(bodies_->velocity_mps[body]) * span_s_;
+}
+
+// visit(other, separation) for all that touches, or overlaps, `body` now; separation from `other`,
+// or an image of it, to `body`.
+template <typename Scalar, typename Space>
+template <typename Visit>
+void SweptEngine<Scalar, Space>::for_each_touching(std::uint32_t body, Visit&& visit) {
+    const Vec position = position_at(body, now_s_);
+    const Scalar extent = extent_m(body);
+    const Scalar radius = bodies_->radius_m[body];
+    const Scalar near = radius + touch_tolerance_m(radius, extent);
+    const Box<Scalar> box{position.x() - near, position.y() - near, position.x() + near,
+                          position.y() + near};
+    space_.for_each_image(box, [&](const Box<Scalar>& moved, Image image) {
+        broadphase_.for_each_near(body, moved, [&](std::uint32_t other) {
+            if (!bodies_->alive[other]) return;
+            const Vec separation = space_.moved(position, image) - position_at(other, now_s_);
+            const Scalar reach = radius + bodies_->radius_m[other];
+            const Scalar limit =
+                reach + touch_tolerance_m(reach, std::max(extent, extent_m(other)));
+            const Scalar squared = separation.squaredNorm();
+            if (squared <= limit * limit && squared > Scalar(0)) visit(other, separation);
+        });
+    });
+}
+
+template <typename Scalar, typename Space>
+template <typename Visit>
+void SweptEngine<Scalar, Space>::for_each_touched_wall(std::uint32_t body, Visit&& visit) const {
+    if (!model_->walls) return;
+    const Vec position = position_at(body, now_s_);
+    const Scalar radius = bodies_->radius_m[body];
+    const Scalar tolerance = touch_tolerance_m(radius, extent_m(body));
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        const Scalar below = position[axis] - (model_->walls->min_m[axis] + radius);
+        const Scalar above = (model_->walls->max_m[axis] - radius) - position[axis];
+        if (below <= tolerance) visit(2 * axis);
+        if (above <= tolerance) visit(2 * axis + 1);
+    }
+}
+
+// Whether anything but the two of this event touches either of them.
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::is_touched_by_others(const Happening& event) {
+    const bool is_pair = event.kind == EventKind::kBall;
+    bool found = false;
+    const auto look = [&](std::uint32_t body, std::uint32_t partner) {
+        if (is_immovable(body)) return;
+        for_each_touching(
+            body, [&](std::uint32_t other, const Vec&) { found = found || other != partner; });
+        for_each_touched_wall(
+            body, [&](std::uint32_t side) { found = found || is_pair || side != event.b; });
+    };
+    look(event.a, is_pair ? event.b : kNoBody);
+    if (is_pair && !found) look(event.b, event.a);
+    return found;
+}
+
+template <typename Scalar, typename Space>
+std::uint32_t SweptEngine<Scalar, Space>::collide_set(const Happening& event) {
+    set_.begin(bodies_->slots());
+    join_set(event);
+    gather_simultaneous();
+    const auto report = [&](std::span<const Hit<Scalar>> together) {
+        for (const Hit<Scalar>& hit : together) {
+            move_to(hit.a, now_s_);
+            if (hit.b != kNoBody) move_to(hit.b, now_s_);
+        }
+        record_hits(*bodies_, now_s_, together, *record_);
+    };
+    const Resolution done = set_.resolve(
+        model_->restitution, [&](std::uint32_t body) { look_around(body); }, report);
+    for (const std::uint32_t body : set_.hit_bodies()) {
+        bodies_->velocity_mps[body] = set_.velocity_mps(body);
+        after_event(body, {});
+    }
+    if (done.unfinished) ++record_->audit.unfinished_sets;
+    place_and_predict_set();
+    return done.hits;
+}
+
+// False when it is a fall, or its two do not touch yet.
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::join_set(const Happening& event) {
+    if (event.kind == EventKind::kFall) return false;
+    if (event.kind == EventKind::kWall) {
+        add_to_set(event.a);
+        set_.touch_wall(event.a, event.b);
+        return true;
+    }
+    const Vec separation = separation_now(event.a, event.b, event.image);
+    const Scalar reach = bodies_->radius_m[event.a] + bodies_->radius_m[event.b];
+    const Scalar extent = std::max(extent_m(event.a), extent_m(event.b));
+    if (separation.norm() > reach + touch_tolerance_m(reach, extent)) return false;
+    add_to_set(event.a);
+    add_to_set(event.b);
+    set_.touch(event.a, event.b, separation);
+    return true;
+}
+
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::gather_simultaneous() {
+    const Scalar instant_s = now_s_ + static_cast<Scalar>(kSameInstant) *
+                                          std::numeric_limits<Scalar>::epsilon() * span_s_;
+    not_in_set_.clear();
+    while (!queue_.empty() && queue_.next().time_s <= instant_s) {
+        const Happening event = queue_.pop();
+        if (!is_stale(event) && !join_set(event)) not_in_set_.push_back(event);
+    }
+    for (const Happening& event : not_in_set_) queue_.push(event);
+}
+
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::look_around(std::uint32_t body) {
+    for_each_touching(body, [&](std::uint32_t other, const Vec& separation) {
+        add_to_set(other);
+        set_.touch(body, other, separation);
+    });
+    for_each_touched_wall(body, [&](std::uint32_t side) { set_.touch_wall(body, side); });
+}
+
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::add_to_set(std::uint32_t body) {
+    set_.add(body, bodies_->velocity_mps[body], bodies_->mass_kg[body], was_just_hit(body));
+}
+
+template bool SweptEngine<double, OpenSpace<double>>::is_touched_by_others(const Happening&);
+template bool SweptEngine<float, OpenSpace<float>>::is_touched_by_others(const Happening&);
+template bool SweptEngine<double, TorusSpace<double>>::is_touched_by_others(const Happening&);
+template bool SweptEngine<float, TorusSpace<float>>::is_touched_by_others(const Happening&);
+template std::uint32_t SweptEngine<double, OpenSpace<double>>::collide_set(const Happening&);
+template std::uint32_t SweptEngine<float, OpenSpace<float>>::collide_set(const Happening&);
+template std::uint32_t SweptEngine<double, TorusSpace<double>>::collide_set(const Happening&);
+template std::uint32_t SweptEngine<float, TorusSpace<float>>::collide_set(const Happening&);
+
+}  // namespace fts::physics
