@@ -3,10 +3,15 @@
 // studies use it.
 //
 // Looks at every pair, moves everybody to every event, takes roots from the textbook formula in
-// __float128 (long double where that has as many bits). Contacts of one instant are resolved
-// together, as generalised reflections (Smith et al. 2012), their non-negative impulses by
-// Gauss-Seidel to convergence. Drag is exact: bodies with one drag k move on the same lines in the
-// slower time (1 - exp(-k t)) / k. Restitution is 1. Platforms are not modelled.
+// __float128 (long double where that has as many bits). Pairs whose swept boxes are apart by far
+// are passed over in double precision. Contacts of one instant are resolved together, as
+// generalised reflections (Smith et al. 2012), their non-negative impulses by Gauss-Seidel to
+// convergence. Drag is exact: bodies with one drag k move on the same lines in the slower time
+// (1 - exp(-k t)) / k. Restitution is 1. Platforms are not modelled.
+//
+// A scene gives positions in double precision, so what is nearer than kTouchTolerance of the sum of
+// radii, or than the round-off of its coordinates, touches. What touches and approaches slower than
+// 1e-30 of its speeds rests.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +41,9 @@ class Oracle {
 
     // False when it stopped after `max_events`, at the time of the last one.
     bool advance(double span_s, std::size_t max_events = 10'000'000);
+
+    // Turns every velocity round, so that what follows is the past again, where nothing drags.
+    void reverse();
 
     // Of the last advance, in the order they happened.
     const std::vector<OracleContact>& contacts() const;
