@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <type_traits>
+#include <vector>
+
+#include "common/physics/cell_grid.h"
+#include "common/physics/periodic.h"
 
 namespace fts::physics {
 namespace {
@@ -126,6 +131,39 @@ Together together_of(std::span<const Contact<Scalar>> contacts, const Vec2d& fra
     return sum;
 }
 
+std::optional<Model<double>::Box> in_double(const auto& box) {
+    if (!box) return std::nullopt;
+    return Model<double>::Box{box->min_m.template cast<double>(),
+                              box->max_m.template cast<double>()};
+}
+
+// How far a disc reaches out of a box; negative inside.
+double beyond_m(const Model<double>::Box& box, const Vec2d& position_m, double radius_m) {
+    const Vec2d below = box.min_m - position_m, above = position_m - box.max_m;
+    return std::max(below.maxCoeff(), above.maxCoeff()) + radius_m;
+}
+
+struct Crowd {
+    std::vector<double> x_m, y_m, radius_m;
+    std::vector<std::uint8_t> is_immovable;
+    double largest_radius_m = 0.0;
+
+    Vec2d position_m(std::uint32_t i) const { return {x_m[i], y_m[i]}; }
+};
+
+template <typename Scalar>
+Crowd crowd_of(const Bodies<Scalar>& bodies) {
+    Crowd crowd;
+    for (const BodyId id : bodies.ids) {
+        crowd.x_m.push_back(static_cast<double>(bodies.position_m[id.index].x()));
+        crowd.y_m.push_back(static_cast<double>(bodies.position_m[id.index].y()));
+        crowd.radius_m.push_back(static_cast<double>(bodies.radius_m[id.index]));
+        crowd.is_immovable.push_back(std::isinf(bodies.mass_kg[id.index]));
+        crowd.largest_radius_m = std::max(crowd.largest_radius_m, crowd.radius_m.back());
+    }
+    return crowd;
+}
+
 class Fnv1a {
   public:
     template <typename Value>
@@ -209,6 +247,32 @@ Vec2d momentum_ns(const Bodies<Scalar>& bodies) {
 }
 
 template <typename Scalar>
+double deepest_overlap(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+    const Crowd crowd = crowd_of(bodies);
+    const auto periodic = in_double(model.periodic), walls = in_double(model.walls);
+    const Discs<double> discs{crowd.x_m, crowd.y_m, crowd.radius_m, crowd.largest_radius_m};
+    CellGrid<double> grid;
+    std::vector<DiscPair> pairs;
+    grid.fit(discs, periodic);
+    grid.find_overlaps(discs, pairs);
+    double deepest = 0.0;
+    for (const DiscPair& pair : pairs) {
+        if (crowd.is_immovable[pair.a] && crowd.is_immovable[pair.b]) continue;
+        const double radius_a = crowd.radius_m[pair.a], radius_b = crowd.radius_m[pair.b];
+        const Vec2d line =
+            nearest_image<double>(crowd.position_m(pair.a) - crowd.position_m(pair.b), periodic);
+        const double overlap_m = radius_a + radius_b - line.norm();
+        deepest = std::max(deepest, overlap_m / std::min(radius_a, radius_b));
+    }
+    for (std::uint32_t i = 0; walls && i < discs.count(); ++i) {
+        if (crowd.is_immovable[i]) continue;
+        const double radius = crowd.radius_m[i];
+        deepest = std::max(deepest, beyond_m(*walls, crowd.position_m(i), radius) / radius);
+    }
+    return deepest;
+}
+
+template <typename Scalar>
 std::uint64_t state_hash(const Bodies<Scalar>& bodies) {
     Fnv1a hash;
     for (const BodyId id : bodies.ids) {
@@ -229,6 +293,8 @@ template double kinetic_energy_j(const Bodies<double>&);
 template double kinetic_energy_j(const Bodies<float>&);
 template Vec2d momentum_ns(const Bodies<double>&);
 template Vec2d momentum_ns(const Bodies<float>&);
+template double deepest_overlap(const Bodies<double>&, const Model<double>&);
+template double deepest_overlap(const Bodies<float>&, const Model<float>&);
 template std::uint64_t state_hash(const Bodies<double>&);
 template std::uint64_t state_hash(const Bodies<float>&);
 

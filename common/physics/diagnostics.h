@@ -6,6 +6,7 @@
 
 #include "common/physics/bodies.h"
 #include "common/physics/record.h"
+#include "common/physics/solver.h"
 
 namespace fts::physics {
 
@@ -24,6 +25,12 @@ template <typename Scalar>
 double kinetic_energy_j(const Bodies<Scalar>& bodies);
 template <typename Scalar>
 Vec2d momentum_ns(const Bodies<Scalar>& bodies);
+
+// How deep a disc is inside another, or beyond a wall: the deepest of all, in units of the smaller
+// radius; 0 when nothing overlaps. What an infinite mass passes through (its like, and walls) does
+// not count.
+template <typename Scalar>
+double deepest_overlap(const Bodies<Scalar>& bodies, const Model<Scalar>& model);
 
 // FNV-1a over the bits of every living body's index, position, velocity, radius and mass.
 template <typename Scalar>

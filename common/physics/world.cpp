@@ -273,6 +273,11 @@ Vec2d World<Scalar>::momentum_ns() const {
     return physics::momentum_ns(impl_->current());
 }
 
+template <typename Scalar>
+double World<Scalar>::deepest_overlap() const {
+    return physics::deepest_overlap(impl_->current(), impl_->model);
+}
+
 template class World<double>;
 template class World<float>;
 

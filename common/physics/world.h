@@ -75,6 +75,9 @@ class World {
     std::uint64_t state_hash() const;
     double kinetic_energy_j() const;  // finite masses only
     Vec2d momentum_ns() const;        // finite masses only
+    // How deep the worst pair, or ball and wall, overlap now, in units of the smaller radius; 0
+    // when none does.
+    double deepest_overlap() const;
 
   private:
     struct Impl;
