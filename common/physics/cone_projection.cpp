@@ -198,9 +198,8 @@ std::uint32_t ConeProjection::largest_degree() {
     return *std::max_element(degree_.begin(), degree_.end());
 }
 
-// One step down the gradient from `ahead_`, which then is where the next one starts. Returns the
-// largest change of an impulse.
-double ConeProjection::descend(double rate, double momentum) {
+// One step down the gradient from `ahead_`, which then is where the next one starts.
+ConeProjection::Descent ConeProjection::descend(double rate, double momentum) {
     velocity_.assign(inverse_mass_.size(), Vec2d::Zero());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const Contact& c = contacts_[i];
@@ -208,7 +207,8 @@ double ConeProjection::descend(double rate, double momentum) {
         if (c.a != kFixed) velocity_[c.a] += inverse_mass_[c.a] * push;
         if (c.b != kFixed) velocity_[c.b] -= inverse_mass_[c.b] * push;
     }
-    double largest = 0.0;
+    Descent descent{0.0, false};
+    double against = 0.0;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const Contact& c = contacts_[i];
         double parting = 0.0;
@@ -217,11 +217,13 @@ double ConeProjection::descend(double rate, double momentum) {
         const double gradient = c.target + parting * c.scale;
         const double next = std::max(0.0, ahead_[i] - rate * gradient);
         const double change = next - lambda_[i];
-        largest = std::max(largest, std::abs(change));
+        descent.largest_change = std::max(descent.largest_change, std::abs(change));
+        against += (ahead_[i] - next) * change;
         ahead_[i] = std::max(0.0, next + momentum * change);
         lambda_[i] = next;
     }
-    return largest;
+    descent.turned_back = against > 0.0;
+    return descent;
 }
 
 // The largest eigenvalue of the couplings is at most the largest number of contacts of one body,
@@ -232,10 +234,14 @@ void ConeProjection::solve_by_gradient() {
     double pace = 1.0;
     for (std::uint32_t step = 0; step < kGradientSteps; ++step) {
         const double next_pace = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * pace * pace));
-        const double change = descend(rate, (pace - 1.0) / next_pace);
+        const Descent descent = descend(rate, (pace - 1.0) / next_pace);
         pace = next_pace;
+        if (descent.turned_back) {
+            pace = 1.0;
+            ahead_ = lambda_;
+        }
         const double largest = *std::max_element(lambda_.begin(), lambda_.end());
-        if (change <= kGradientResidual * largest) return;
+        if (descent.largest_change <= kGradientResidual * largest) return;
     }
 }
 

@@ -9,8 +9,10 @@
 // Up to kMaxExactContacts by the active set method of Lawson and Hanson, "Solving Least Squares
 // Problems" (1974), chapter 23: a contact joins the active set only while its own approach is left
 // over, so that the active normals never depend on each other and the normal equations have a
-// Cholesky factor. Above that by an accelerated projected gradient in kGradientSteps, to an
-// accuracy that need not be perfect: whoever uses it scales the step (see simultaneous.h).
+// Cholesky factor. Above that by an accelerated projected gradient, restarted when it turns back
+// (O'Donoghue and Candes, "Adaptive restart for accelerated gradient schemes", 2015), in
+// kGradientSteps: to an accuracy that need not be perfect, since whoever uses it scales the step
+// (see simultaneous.h).
 //
 // In double whatever the scene's scalar. No allocation after warm-up.
 #pragma once
@@ -23,8 +25,8 @@
 
 namespace fts::physics {
 
-inline constexpr std::size_t kMaxExactContacts = 192;
-inline constexpr std::uint32_t kGradientSteps = 2000;
+inline constexpr std::size_t kMaxExactContacts = 512;
+inline constexpr std::uint32_t kGradientSteps = 4000;
 
 class ConeProjection {
   public:
@@ -59,7 +61,11 @@ class ConeProjection {
     bool step_to_solution();
     std::size_t most_pressed(double least) const;
     std::uint32_t largest_degree();
-    double descend(double rate, double momentum);
+    struct Descent {
+        double largest_change;
+        bool turned_back;  // the step went against the momentum it started with
+    };
+    Descent descend(double rate, double momentum);
 
     std::vector<double> inverse_mass_;
     std::vector<Contact> contacts_;

@@ -43,6 +43,8 @@ namespace fts::physics {
 inline constexpr std::uint32_t kBaseEventBudget = 4096;
 inline constexpr std::uint32_t kEventBudgetPerBody = 64;
 
+// Hits in a set are cheaper than collisions alone: so many count as one against the budget.
+inline constexpr std::uint32_t kSetHitsPerEvent = 8;
 inline constexpr std::uint32_t kMaxStretches = 1U << 18;
 
 std::uint32_t event_budget(std::size_t bodies);

@@ -16,26 +16,24 @@ constexpr double kClockSlack = 8.0;
 }  // namespace
 
 template <typename Scalar, typename Space>
-std::uint32_t SweptEngine<Scalar, Space>::process(const Happening& event) {
+void SweptEngine<Scalar, Space>::process(const Happening& event) {
     switch (event.kind) {
         case EventKind::kBall:
             return collide_pair(event);
         case EventKind::kWall:
             return collide_wall(event);
         case EventKind::kFall:
-            fall(event.a);
-            return 1;
+            return fall(event.a);
     }
-    return 0;
 }
 
 // A grazing pair may turn out, to the last bit, not to approach any more; then nothing happens.
 template <typename Scalar, typename Space>
-std::uint32_t SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
+void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     Bodies<Scalar>& all = *bodies_;
     const std::uint32_t a = event.a, b = event.b;
     const Vec approach = all.velocity_mps[a] - all.velocity_mps[b];
-    if (!(separation_now(a, b, event.image).dot(approach) < Scalar(0))) return 0;
+    if (!(separation_now(a, b, event.image).dot(approach) < Scalar(0))) return;
     move_to(a, now_s_);
     move_to(b, now_s_);
     touch(a, b, event.image);
@@ -60,11 +58,11 @@ std::uint32_t SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     after_event(b, {a, event.image});
     place_and_predict(a);
     place_and_predict(b);
-    return 1;
+    count(1, 1);
 }
 
 template <typename Scalar, typename Space>
-std::uint32_t SweptEngine<Scalar, Space>::collide_wall(const Happening& event) {
+void SweptEngine<Scalar, Space>::collide_wall(const Happening& event) {
     Bodies<Scalar>& all = *bodies_;
     const std::uint32_t body = event.a, axis = event.b / 2;
     const bool at_max = event.b % 2 == 1;
@@ -87,7 +85,7 @@ std::uint32_t SweptEngine<Scalar, Space>::collide_wall(const Happening& event) {
     account(record_->contacts.back(), record_->audit);
     after_event(body, {});
     place_and_predict(body);
-    return 1;
+    count(1, 1);
 }
 
 template <typename Scalar, typename Space>
@@ -97,13 +95,7 @@ void SweptEngine<Scalar, Space>::fall(std::uint32_t body) {
         {bodies_->id_of(body), now_s_, bodies_->position_m[body], bodies_->velocity_mps[body]});
     bodies_->remove(body);
     after_event(body, {});
-}
-
-template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::after_event(std::uint32_t body, const Partner& partner) {
-    ++count_[body];
-    partner_[body] = partner;
-    hit_s_[body] = now_s_;
+    count(1, 1);
 }
 
 template <typename Scalar, typename Space>
@@ -121,9 +113,9 @@ void SweptEngine<Scalar, Space>::touch(std::uint32_t a, std::uint32_t b, Image i
     all.position_m[b] += all.velocity_mps[b] * wait;
 }
 
-template std::uint32_t SweptEngine<double, OpenSpace<double>>::process(const Happening&);
-template std::uint32_t SweptEngine<float, OpenSpace<float>>::process(const Happening&);
-template std::uint32_t SweptEngine<double, TorusSpace<double>>::process(const Happening&);
-template std::uint32_t SweptEngine<float, TorusSpace<float>>::process(const Happening&);
+template void SweptEngine<double, OpenSpace<double>>::process(const Happening&);
+template void SweptEngine<float, OpenSpace<float>>::process(const Happening&);
+template void SweptEngine<double, TorusSpace<double>>::process(const Happening&);
+template void SweptEngine<float, TorusSpace<float>>::process(const Happening&);
 
 }  // namespace fts::physics

@@ -39,6 +39,7 @@ void SweptEngine<Scalar, Space>::begin(Bodies<Scalar>& bodies, const Model<Scala
     model_ = &model;
     record_ = &record;
     report_ = {};
+    spent_ = 0;
     budget_ = event_budget(bodies.ids.size());
     span_s_ = span_s;
     now_s_ = Scalar(0);
@@ -67,9 +68,9 @@ bool SweptEngine<Scalar, Space>::run_stretch() {
         const Happening event = queue_.pop();
         if (is_stale(event)) continue;
         if (Space::kHasImages && event.time_s > until_s_) break;
-        if (report_.events >= budget_) return false;
+        if (spent_ >= budget_) return false;
         now_s_ = event.time_s;
-        report_.events += process(event);
+        process(event);
     }
     return true;
 }
@@ -187,6 +188,19 @@ template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::is_stale(const Happening& event) const {
     return event.count_a != count_[event.a] ||
            (event.kind == EventKind::kBall && event.count_b != count_[event.b]);
+}
+
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::count(std::uint32_t events, std::uint32_t cost) {
+    report_.events += events;
+    spent_ += cost;
+}
+
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::after_event(std::uint32_t body, const Partner& partner) {
+    ++count_[body];
+    partner_[body] = partner;
+    hit_s_[body] = now_s_;
 }
 
 template <typename Scalar, typename Space>

@@ -31,7 +31,7 @@ class SweptEngine {
         friend bool operator==(const Partner&, const Partner&) = default;
     };
 
-    // When: swept_engine.cpp.
+    // When, and what it changes: swept_engine.cpp.
     void begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                Record<Scalar>& record);
     void begin_stretch();
@@ -49,20 +49,21 @@ class SweptEngine {
     void predict_fall(std::uint32_t body);
     void expect(const Happening& event);
     bool is_stale(const Happening& event) const;
+    void count(std::uint32_t events, std::uint32_t cost);
+    void after_event(std::uint32_t body, const Partner& partner);
     void place_and_predict(std::uint32_t body);
     void place_and_predict_set();
 
-    // What: swept_collisions.cpp. How many collisions and falls there were.
-    std::uint32_t process(const Happening& event);
-    std::uint32_t collide_pair(const Happening& event);
-    std::uint32_t collide_wall(const Happening& event);
+    // What: swept_collisions.cpp.
+    void process(const Happening& event);
+    void collide_pair(const Happening& event);
+    void collide_wall(const Happening& event);
     void fall(std::uint32_t body);
-    void after_event(std::uint32_t body, const Partner& partner);
     void touch(std::uint32_t a, std::uint32_t b, Image image);
 
     // Several at once: swept_sets.cpp.
     bool is_touched_by_others(const Happening& event);
-    std::uint32_t collide_set(const Happening& event);
+    void collide_set(const Happening& event);
     bool join_set(const Happening& event);
     void gather_simultaneous();
     void look_around(std::uint32_t body);
@@ -100,6 +101,7 @@ class SweptEngine {
     Record<Scalar>* record_ = nullptr;
     DriftReport<Scalar> report_;
     std::uint32_t budget_ = 0;
+    std::uint32_t spent_ = 0;  // of the budget
     Scalar span_s_ = Scalar(0);
     Scalar until_s_ = Scalar(0);  // the end of the present stretch, within the span
     Scalar now_s_ = Scalar(0);

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "common/physics/hit_record.h"
+#include "common/physics/solver_swept.h"
 #include "common/physics/swept_engine.h"
 
 namespace fts::physics {
@@ -81,7 +82,7 @@ bool SweptEngine<Scalar, Space>::is_touched_by_others(const Happening& event) {
 }
 
 template <typename Scalar, typename Space>
-std::uint32_t SweptEngine<Scalar, Space>::collide_set(const Happening& event) {
+void SweptEngine<Scalar, Space>::collide_set(const Happening& event) {
     set_.begin(bodies_->slots());
     join_set(event);
     gather_simultaneous();
@@ -100,7 +101,7 @@ std::uint32_t SweptEngine<Scalar, Space>::collide_set(const Happening& event) {
     }
     if (done.unfinished) ++record_->audit.unfinished_sets;
     place_and_predict_set();
-    return done.hits;
+    count(done.hits, 1 + done.hits / kSetHitsPerEvent);
 }
 
 // False when it is a fall, or its two do not touch yet.
@@ -152,9 +153,9 @@ template bool SweptEngine<double, OpenSpace<double>>::is_touched_by_others(const
 template bool SweptEngine<float, OpenSpace<float>>::is_touched_by_others(const Happening&);
 template bool SweptEngine<double, TorusSpace<double>>::is_touched_by_others(const Happening&);
 template bool SweptEngine<float, TorusSpace<float>>::is_touched_by_others(const Happening&);
-template std::uint32_t SweptEngine<double, OpenSpace<double>>::collide_set(const Happening&);
-template std::uint32_t SweptEngine<float, OpenSpace<float>>::collide_set(const Happening&);
-template std::uint32_t SweptEngine<double, TorusSpace<double>>::collide_set(const Happening&);
-template std::uint32_t SweptEngine<float, TorusSpace<float>>::collide_set(const Happening&);
+template void SweptEngine<double, OpenSpace<double>>::collide_set(const Happening&);
+template void SweptEngine<float, OpenSpace<float>>::collide_set(const Happening&);
+template void SweptEngine<double, TorusSpace<double>>::collide_set(const Happening&);
+template void SweptEngine<float, TorusSpace<float>>::collide_set(const Happening&);
 
 }  // namespace fts::physics
