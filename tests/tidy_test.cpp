@@ -28,9 +28,9 @@ bool is_source(const std::string& path) {
 }
 
 bool is_text(const fs::path& path) {
-    static const std::set<std::string> kExtensions{".cpp",   ".h",     ".md",   ".txt",
-                                                   ".cmake", ".proto", ".json", ".yaml",
-                                                   ".yml",   ".level", ".js",   ".html"};
+    static const std::set<std::string> kExtensions{".cpp",   ".h",    ".md",   ".txt", ".cmake",
+                                                   ".proto", ".json", ".yaml", ".yml", ".level",
+                                                   ".scene", ".js",   ".html"};
     const std::string name = path.filename().string();
     return kExtensions.contains(path.extension().string()) ||
            (path.extension().empty() && name != "LICENSE") || name == ".clang-tidy";

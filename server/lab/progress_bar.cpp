@@ -41,7 +41,7 @@ std::string progress_line(std::size_t done, std::size_t of, double elapsed_s,
     if (done > 0 && done < of) {
         const auto left_s = static_cast<long>(elapsed_s * static_cast<double>(of - done) /
                                               static_cast<double>(done));
-        char text[32];
+        char text[64];
         std::snprintf(text, sizeof text, ", about %ld:%02ld left", left_s / 60, left_s % 60);
         line += text;
     }

@@ -58,7 +58,7 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"Asio", "asio.hpp asio/", "common/net", true},
     {"libsodium", "sodium.h sodium/", "common/net", true},
     {"Protobuf", "google/protobuf/ arena.pb.h scene.pb.h",
-     "common/replication/wire.cpp server/match/level_file.cpp", true},
+     "common/replication/wire.cpp server/match/level_file.cpp server/lab/scene_text.cpp", true},
     {"SDL", "SDL", "client/sdl tests/client_sdl", false},
     {"Dear ImGui", "imgui", "client/sdl tests/client_sdl", false},
     {"stb", "stb_", "client/sdl", true},
