@@ -271,11 +271,6 @@ Due Coasting<Scalar>::next_as() {
         if (!(first.time_s <= end_s_)) return {};
         if (turns_left_ == 0) return {Happening::kUnfinished, now_s_, 0, 0};
         --turns_left_;
-        if (turns_to_rebase_-- == 0) {
-            advance_to(first.time_s);
-            rebase();
-            continue;
-        }
         const Prospect& prospect = prospects_[first.body];
         if (prospect.meeting_s <= prospect.border_s) {
             if (holds(prospect)) {
@@ -284,9 +279,11 @@ Due Coasting<Scalar>::next_as() {
             advance_to(first.time_s);
             expect_meeting<Has>(first.body);
             enter_in_calendar(first.body);
+            settle();
         } else if (prospect.border == Border::kCell) {
             advance_to(first.time_s);
             cross<Has>(first.body);
+            settle();
         } else {
             const bool falls = Has::kPlatform && prospect.border == Border::kFall;
             return {falls ? Happening::kFall : Happening::kWall, first.time_s, first.body,

@@ -9,9 +9,9 @@
 // long as the meeting it knows of holds.
 //
 // When two bodies meet is a function of their last events alone, (position, velocity, time) of
-// each, however late and from whichever cells it is asked. So neither the cells nor the length of
-// ticks show in the bits of a trajectory. What recedes never meets; what overlaps and approaches
-// meets now.
+// each, however late and from whichever cells it is asked. So the length of ticks does not show in
+// the bits of a trajectory, and the cells only in so far as they tell when the epoch moves on. What
+// recedes never meets; what overlaps and approaches meets now.
 //
 // Two bodies that an event left together, receding or at rest to each other but for round-off, are
 // kept apart: they are not predicted to meet again before something happens to one of them. In a
@@ -80,6 +80,10 @@ class Coasting {
     Due next() { return (this->*next_)(); }
     // Time goes on to a moment, not beyond what is due.
     void advance_to(double time_s) { now_s_ = std::max(now_s_, time_s); }
+    // What was due has happened.
+    void settle() {
+        if (turns_to_rebase_-- == 0) rebase();
+    }
     // The span ends where it was to end, or now.
     void end_span() { now_s_ = end_s_; }
     void break_span();

@@ -95,6 +95,7 @@ DriftReport<Scalar> EventSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Mod
         }
         coasting_.advance_to(due.time_s);
         report.events += process(due);
+        coasting_.settle();
     }
     coasting_.end_span();
     return report;
