@@ -62,7 +62,17 @@ class SweptEngine {
     void touch(std::uint32_t a, std::uint32_t b, Image image);
 
     // Several at once: swept_sets.cpp.
+    struct Disc {
+        std::uint32_t body;
+        Vec position_m;
+        Scalar radius_m;
+        Scalar extent_m;
+    };
+    Disc disc_at(std::uint32_t body, const Vec& position_m) const;
+    Box<Scalar> reach_of(const Disc& disc) const;
+    bool touches(const Disc& disc, std::uint32_t other, const Vec& separation_m) const;
     bool is_touched_by_others(const Happening& event);
+    bool is_pair_touched(const Happening& event);
     void collide_set(const Happening& event);
     bool join_set(const Happening& event);
     void gather_simultaneous();

@@ -17,6 +17,12 @@ Scalar largest(const Vec2<Scalar>& v) {
     return std::max(std::abs(v.x()), std::abs(v.y()));
 }
 
+template <typename Scalar>
+Box<Scalar> united(const Box<Scalar>& a, const Box<Scalar>& b) {
+    return {std::min(a.min_x_m, b.min_x_m), std::min(a.min_y_m, b.min_y_m),
+            std::max(a.max_x_m, b.max_x_m), std::max(a.max_y_m, b.max_y_m)};
+}
+
 }  // namespace
 
 // The largest length that goes into where a body is within the span.
@@ -25,26 +31,42 @@ Scalar SweptEngine<Scalar, Space>::extent_m(std::uint32_t body) const {
     return largest(bodies_->position_m[body]) + largest(bodies_->velocity_mps[body]) * span_s_;
 }
 
-// visit(other, separation) for all that touches, or overlaps, `body` now; separation from `other`,
-// or an image of it, to `body`.
+template <typename Scalar, typename Space>
+auto SweptEngine<Scalar, Space>::disc_at(std::uint32_t body, const Vec& position_m) const -> Disc {
+    return {body, position_m, bodies_->radius_m[body], extent_m(body)};
+}
+
+// Within this box is all that touches the disc.
+template <typename Scalar, typename Space>
+Box<Scalar> SweptEngine<Scalar, Space>::reach_of(const Disc& disc) const {
+    const Scalar near = disc.radius_m + touch_tolerance_m(disc.radius_m, disc.extent_m);
+    return {disc.position_m.x() - near, disc.position_m.y() - near, disc.position_m.x() + near,
+            disc.position_m.y() + near};
+}
+
+// Or overlaps; `separation_m` is from `other` to the disc. Of two with one centre nothing can be
+// said.
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::touches(const Disc& disc, std::uint32_t other,
+                                         const Vec& separation_m) const {
+    const Scalar reach = disc.radius_m + bodies_->radius_m[other];
+    const Scalar squared = separation_m.squaredNorm();
+    const Scalar limit = reach + touch_tolerance_m(reach, std::max(disc.extent_m, extent_m(other)));
+    return squared <= limit * limit && squared > Scalar(0);
+}
+
+// visit(other, separation) for all that touches `body` now; separation from `other`, or an image of
+// it, to `body`.
 template <typename Scalar, typename Space>
 template <typename Visit>
 void SweptEngine<Scalar, Space>::for_each_touching(std::uint32_t body, Visit&& visit) {
-    const Vec position = position_at(body, now_s_);
-    const Scalar extent = extent_m(body);
-    const Scalar radius = bodies_->radius_m[body];
-    const Scalar near = radius + touch_tolerance_m(radius, extent);
-    const Box<Scalar> box{position.x() - near, position.y() - near, position.x() + near,
-                          position.y() + near};
-    space_.for_each_image(box, [&](const Box<Scalar>& moved, Image image) {
+    const Disc disc = disc_at(body, position_at(body, now_s_));
+    space_.for_each_image(reach_of(disc), [&](const Box<Scalar>& moved, Image image) {
         broadphase_.for_each_near(body, moved, [&](std::uint32_t other) {
             if (!bodies_->alive[other]) return;
-            const Vec separation = space_.moved(position, image) - position_at(other, now_s_);
-            const Scalar reach = radius + bodies_->radius_m[other];
-            const Scalar limit =
-                reach + touch_tolerance_m(reach, std::max(extent, extent_m(other)));
-            const Scalar squared = separation.squaredNorm();
-            if (squared <= limit * limit && squared > Scalar(0)) visit(other, separation);
+            const Vec separation =
+                space_.moved(disc.position_m, image) - position_at(other, now_s_);
+            if (touches(disc, other, separation)) visit(other, separation);
         });
     });
 }
@@ -64,20 +86,41 @@ void SweptEngine<Scalar, Space>::for_each_touched_wall(std::uint32_t body, Visit
     }
 }
 
-// Whether anything but the two of this event touches either of them.
+// Whether anything but the two of this event touches either of them. What does not move does not
+// pass anything on.
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::is_touched_by_others(const Happening& event) {
-    const bool is_pair = event.kind == EventKind::kBall;
     bool found = false;
-    const auto look = [&](std::uint32_t body, std::uint32_t partner) {
-        if (is_immovable(body)) return;
-        for_each_touching(
-            body, [&](std::uint32_t other, const Vec&) { found = found || other != partner; });
-        for_each_touched_wall(
-            body, [&](std::uint32_t side) { found = found || is_pair || side != event.b; });
-    };
-    look(event.a, is_pair ? event.b : kNoBody);
-    if (is_pair && !found) look(event.b, event.a);
+    if (event.kind == EventKind::kWall) {
+        for_each_touched_wall(event.a, [&](std::uint32_t side) { found |= side != event.b; });
+        for_each_touching(event.a, [&](std::uint32_t, const Vec&) { found = true; });
+        return found;
+    }
+    const auto note_wall = [&](std::uint32_t) { found = true; };
+    if (!is_immovable(event.a)) for_each_touched_wall(event.a, note_wall);
+    if (!is_immovable(event.b)) for_each_touched_wall(event.b, note_wall);
+    return found || is_pair_touched(event);
+}
+
+// One look at the grid for both, since they lie side by side.
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
+    const Vec at_a = position_at(event.a, now_s_);
+    const Disc a = disc_at(event.a, at_a);
+    const Disc b = disc_at(event.b, at_a - separation_now(event.a, event.b, event.image));
+    const bool a_moves = !is_immovable(event.a), b_moves = !is_immovable(event.b);
+    const Box<Scalar> box = !a_moves   ? reach_of(b)
+                            : !b_moves ? reach_of(a)
+                                       : united(reach_of(a), reach_of(b));
+    bool found = false;
+    space_.for_each_image(box, [&](const Box<Scalar>& moved, Image image) {
+        broadphase_.for_each_near(event.a, moved, [&](std::uint32_t other) {
+            if (found || other == event.b || !bodies_->alive[other]) return;
+            const Vec at = position_at(other, now_s_);
+            found = (a_moves && touches(a, other, space_.moved(a.position_m, image) - at)) ||
+                    (b_moves && touches(b, other, space_.moved(b.position_m, image) - at));
+        });
+    });
     return found;
 }
 
