@@ -69,11 +69,13 @@ class CellGrid {
     void divide(Axis& axis, Scalar cell_m, std::uint32_t most_cells);
     void sort(const Discs<Scalar>& discs);
     void count_cells(const Discs<Scalar>& discs);
-    void add_images(const Discs<Scalar>& discs);
+    // What only some scenes need is never inlined, so that a count of instructions shows it apart
+    // (scripts/feature-cost).
+    [[gnu::noinline]] void add_images(const Discs<Scalar>& discs);
     template <bool kEqualRadii>
-    void put_into_cells(const Discs<Scalar>& discs);
+    [[gnu::noinline]] void put_into_cells(const Discs<Scalar>& discs);
     template <bool kEqualRadii>
-    void search(Scalar reach_squared, std::vector<DiscPair>& pairs) const;
+    [[gnu::noinline]] void search(Scalar reach_squared, std::vector<DiscPair>& pairs) const;
     void add_pairs(std::uint32_t i, std::uint32_t begin, std::uint32_t lanes, std::uint32_t end,
                    std::vector<DiscPair>& pairs) const;
 

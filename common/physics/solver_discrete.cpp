@@ -39,9 +39,13 @@ class DiscreteSolver final : public Solver<Scalar> {
         Scalar distance_m;  // of the centres; the line's length, unless they coincide
     };
 
+    // What only some scenes need is never inlined, so that a count of instructions shows it apart
+    // (scripts/feature-cost).
     void gather(const Bodies<Scalar>& bodies);
+    bool holds_just(const Bodies<Scalar>& bodies) const;
+    void take_in_order_of_ids(const Bodies<Scalar>& bodies);
     void advance(Scalar span_s);
-    void advance_in_box(Scalar span_s);
+    [[gnu::noinline]] void advance_in_box(Scalar span_s);
     void find_pairs();
     void bring_neighbours_together();
     Resolve resolve_for_model() const;
@@ -55,10 +59,10 @@ class DiscreteSolver final : public Solver<Scalar> {
                           Scalar overlap_m, Scalar time_s);
     void wrap(std::uint32_t i);
     template <bool kEqualRadii>
-    void reflect_from_walls(Scalar time_s);
+    [[gnu::noinline]] void reflect_from_walls(Scalar time_s);
     void reflect(std::uint32_t i, const Box& room, Scalar time_s);
     template <typename Shape>
-    void drop_who_is_off(const Shape& shape, Scalar time_s);
+    [[gnu::noinline]] void drop_who_is_off(const Shape& shape, Scalar time_s);
     void drop(std::uint32_t slot, Scalar time_s);
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(slot_.size()); }
@@ -124,17 +128,23 @@ DriftReport<Scalar> DiscreteSolver<Scalar>::drift(Bodies<Scalar>& bodies,
 
 template <typename Scalar>
 void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
-    x_m_.clear(), y_m_.clear(), vx_mps_.clear(), vy_mps_.clear(), slot_.clear();
-    radius_m_.clear(), inverse_mass_per_kg_.clear();
-    place_.resize(bodies.slots());
-    for (const BodyId id : bodies.ids) {
-        place_[id.index] = count();
-        slot_.push_back(id.index);
-        x_m_.push_back(bodies.position_m[id.index].x());
-        y_m_.push_back(bodies.position_m[id.index].y());
-        vx_mps_.push_back(bodies.velocity_mps[id.index].x());
-        vy_mps_.push_back(bodies.velocity_mps[id.index].y());
+    const bool same_bodies = holds_just(bodies);
+    if (!same_bodies) take_in_order_of_ids(bodies);
+    const std::uint32_t bodies_count = count();
+    for (std::vector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
+        values->resize(bodies_count);
     }
+    for (std::uint32_t i = 0; i < bodies_count; ++i) {
+        const Vec &position = bodies.position_m[slot_[i]],
+                  &velocity = bodies.velocity_mps[slot_[i]];
+        x_m_[i] = position.x();
+        y_m_[i] = position.y();
+        vx_mps_[i] = velocity.x();
+        vy_mps_[i] = velocity.y();
+    }
+    radius_m_.clear();
+    inverse_mass_per_kg_.clear();
+    const Scalar largest_before = largest_radius_m_;
     largest_radius_m_ = slot_.empty() ? Scalar(0) : bodies.radius_m[slot_.front()];
     if (!model_->equal_radii) {
         for (const std::uint32_t slot : slot_) radius_m_.push_back(bodies.radius_m[slot]);
@@ -147,10 +157,32 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
             inverse_mass_per_kg_.push_back(Scalar(1) / bodies.mass_kg[slot]);
         }
     }
-    grid_.fit(discs(), model_->periodic);
-    searches_until_order_ = 1;
+    if (!same_bodies || largest_radius_m_ != largest_before) {
+        grid_.fit(discs(), model_->periodic);
+        searches_until_order_ = 1;
+    }
     forgotten_ = false;
     ahead_ = false;
+}
+
+// What was changed is most often velocities alone; then the order in memory is still good.
+template <typename Scalar>
+bool DiscreteSolver<Scalar>::holds_just(const Bodies<Scalar>& bodies) const {
+    if (slot_.empty() || bodies.ids.size() != slot_.size() || bodies.slots() != place_.size()) {
+        return false;
+    }
+    return std::all_of(slot_.begin(), slot_.end(),
+                       [&](std::uint32_t slot) { return bodies.alive[slot] != 0; });
+}
+
+template <typename Scalar>
+void DiscreteSolver<Scalar>::take_in_order_of_ids(const Bodies<Scalar>& bodies) {
+    slot_.clear();
+    place_.resize(bodies.slots());
+    for (const BodyId id : bodies.ids) {
+        place_[id.index] = count();
+        slot_.push_back(id.index);
+    }
 }
 
 template <typename Scalar>
