@@ -19,6 +19,9 @@ constexpr double kCellRoundOff = 64.0;
 // By how many units of round-off a pair may seem to miss, or to meet too late, and still be
 // computed exactly.
 constexpr double kFilterSlack = 16.0;
+// Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
+// reach and speed: far above round-off.
+constexpr double kApartSlack = 1e-2;
 // So many bodies tell whether the cells still suit all of them.
 constexpr std::size_t kSample = 256;
 
@@ -343,6 +346,8 @@ void Coasting<Scalar>::look_into(std::uint32_t first, std::uint32_t body, Image 
                                  Meeting& best) const {
     constexpr Scalar kSlack =
         Scalar(1) + static_cast<Scalar>(kFilterSlack) * std::numeric_limits<Scalar>::epsilon();
+    constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
+    constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
     const Flight self = flights_[body];
     for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
         const Flight& it = flights_[other];
@@ -371,7 +376,12 @@ void Coasting<Scalar>::look_into(std::uint32_t first, std::uint32_t body, Image 
             from_s + static_cast<double>(time_until_contact<Scalar>(apart, velocity, reach)));
         if (time_s > best.time_s || (time_s == best.time_s && other >= best.with)) continue;
         if (is_immovable(body) && is_immovable(other)) continue;
-        if (are_kept_apart(body, other, image)) continue;
+        // Those kept apart touch when they are left together, and approach by round-off only.
+        if (apart.squaredNorm() < kNear * reach_squared ||
+            rate * rate < kBarely * apart.squaredNorm() *
+                              (self.velocity_mps.squaredNorm() + it.velocity_mps.squaredNorm())) {
+            if (are_kept_apart(body, other, image)) continue;
+        }
         best = {time_s, other};
     }
 }

@@ -114,8 +114,8 @@ class Coasting {
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
-    // Calls visit(other) for every body in the cells about that of `body`, itself included, once
-    // for each image.
+    // Calls visit(other, separation) for every body in the cells about that of `body`, itself
+    // included, once for each image; the separation is from that image to `body`, now.
     template <typename Visit>
     void for_each_near(std::uint32_t body, Visit&& visit) const;
 
@@ -231,9 +231,12 @@ class Coasting {
 template <typename Scalar>
 template <typename Visit>
 void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) const {
-    const auto visit_all = [&](std::uint32_t first, Image) {
+    const Vec position = position_m(body);
+    const auto visit_all = [&](std::uint32_t first, Image image) {
+        const Vec shift(extent_m_.x() * static_cast<Scalar>(image.x),
+                        extent_m_.y() * static_cast<Scalar>(image.y));
         for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
-            visit(other);
+            visit(other, Vec((position - position_m(other)) - shift));
         }
     };
     const Flight& self = flights_[body];

@@ -48,7 +48,7 @@ class EventSolver final : public Solver<Scalar> {
     void touch(std::uint32_t a, std::uint32_t b, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
     bool touches_another(std::uint32_t body, std::uint32_t partner) const;
-    bool are_touching(std::uint32_t a, std::uint32_t b) const;
+    bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
     bool touches_wall(std::uint32_t body, std::uint32_t side) const;
     Scalar extent_m(std::uint32_t body) const;
     void gather_about(std::uint32_t body);
@@ -242,8 +242,8 @@ std::uint32_t EventSolver<Scalar>::collide_together(const Due& due) {
 
 template <typename Scalar>
 void EventSolver<Scalar>::gather_about(std::uint32_t body) {
-    coasting_.for_each_near(body, [&](std::uint32_t other) {
-        if (other == body || !are_touching(body, other)) return;
+    coasting_.for_each_near(body, [&](std::uint32_t other, const Vec& separation) {
+        if (other == body || !are_touching(body, other, separation)) return;
         if (coasting_.is_immovable(body) && coasting_.is_immovable(other)) return;
         join(other);
         touching_.push_back({body, other});
@@ -300,17 +300,19 @@ bool EventSolver<Scalar>::touches_another(std::uint32_t body, std::uint32_t part
         if (body != partner && touches_wall(body, side)) return true;
     }
     bool found = false;
-    coasting_.for_each_near(body, [&](std::uint32_t other) {
-        found = found || (other != body && other != partner && are_touching(body, other));
+    coasting_.for_each_near(body, [&](std::uint32_t other, const Vec& separation) {
+        if (!are_touching(body, other, separation) || other == body || other == partner) return;
+        found = true;
     });
     return found;
 }
 
 template <typename Scalar>
-bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b) const {
+bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b,
+                                       const Vec& separation_m) const {
     constexpr Scalar kFar = static_cast<Scalar>((1.0 + kTouchWithin) * (1.0 + kTouchWithin));
     const Scalar reach = coasting_.flight(a).radius_m + coasting_.flight(b).radius_m;
-    const Scalar squared = coasting_.separation_m(a, b).squaredNorm();
+    const Scalar squared = separation_m.squaredNorm();
     if (squared > kFar * reach * reach) return false;
     const Scalar extent = std::max(extent_m(a), extent_m(b));
     const Scalar tolerance =
