@@ -9,6 +9,7 @@
 #include "common/physics/cone_projection.h"
 #include "common/physics/impact.h"
 #include "common/physics/simultaneous.h"
+#include "tests/physics/allocation_count.h"
 #include "tests/physics/dice.h"
 
 namespace fts::physics {
@@ -93,8 +94,7 @@ struct Resolved {
     Resolution done;
 };
 
-Resolved resolve(const Cluster& cluster, double restitution) {
-    ContactSet<double> set;
+Resolution resolve(const Cluster& cluster, double restitution, ContactSet<double>& set) {
     set.begin(static_cast<std::uint32_t>(cluster.bodies.size()));
     for (std::uint32_t i = 0; i < cluster.bodies.size(); ++i) {
         set.add(i, cluster.bodies[i].velocity_mps, cluster.bodies[i].mass_kg, false);
@@ -102,9 +102,14 @@ Resolved resolve(const Cluster& cluster, double restitution) {
     for (const auto& [a, b] : cluster.contacts) {
         set.touch(a, b, cluster.bodies[a].position_m - cluster.bodies[b].position_m);
     }
-    Resolved resolved;
-    resolved.done = set.resolve(
+    return set.resolve(
         restitution, [](std::uint32_t) {}, [](std::span<const Hit<double>>) {});
+}
+
+Resolved resolve(const Cluster& cluster, double restitution) {
+    ContactSet<double> set;
+    Resolved resolved;
+    resolved.done = resolve(cluster, restitution, set);
     for (std::uint32_t i = 0; i < cluster.bodies.size(); ++i) {
         resolved.velocities_mps.push_back(set.velocity_mps(i));
     }
@@ -294,6 +299,46 @@ TEST(ContactSet, a_pair_alone_collides_to_the_same_bits_as_impact) {
         EXPECT_EQ(set.velocity_mps(1), expected->velocity_2_mps);
         EXPECT_TRUE(set.keeps_apart(1, 0, second.position_m - first.position_m));
     }
+}
+
+TEST(ContactSet, that_has_warmed_up_asks_for_no_memory) {
+    constexpr std::uint64_t kSeed = 511;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    const Cluster cluster = random_cluster(40, dice);
+    ContactSet<double> set;
+    const Resolution first = resolve(cluster, 1.0, set);
+    const std::size_t before = allocations();
+    EXPECT_GT(before, 0U);
+    const Resolution second = resolve(cluster, 1.0, set);
+    EXPECT_EQ(allocations(), before);
+    EXPECT_EQ(first.hits, second.hits);
+    EXPECT_GT(second.hits, 20U);
+}
+
+// A light ball between heavy ones is hit more often than one resolution allows.
+TEST(ContactSet, says_when_it_did_not_finish_and_goes_on_when_asked_again) {
+    Cluster cluster;
+    cluster.bodies.push_back({Vec2d(0, 0), Vec2d(1, 0), 0.5, 1.0});
+    cluster.bodies.push_back({Vec2d(1, 0), Vec2d(0, 0), 0.5, 1e-5});
+    cluster.bodies.push_back({Vec2d(2, 0), Vec2d(0, 0), 0.5, 1.0});
+    find_contacts(cluster);
+    int resolutions = 0;
+    for (bool unfinished = true; unfinished; ++resolutions) {
+        ASSERT_LT(resolutions, 100);
+        const Resolved resolved = resolve(cluster, 1.0);
+        expect_conserved(cluster, resolved);
+        unfinished = resolved.done.unfinished;
+        if (unfinished) {
+            EXPECT_EQ(resolved.done.passes, max_passes(2));
+        } else {
+            expect_parting(cluster, resolved);
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            cluster.bodies[i].velocity_mps = resolved.velocities_mps[i];
+        }
+    }
+    EXPECT_GT(resolutions, 1);
 }
 
 // What minimises: no impulse pulls, no contact approaches, and who parts is not pushed.

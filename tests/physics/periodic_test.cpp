@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/physics/world.h"
+#include "tests/physics/allocation_count.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -227,6 +228,18 @@ TEST(Periodic, a_row_of_touching_balls_right_round_passes_a_blow_across_the_bord
     EXPECT_EQ(world.body(world.ids()[5]).velocity_mps, Vec2d(3, 0));
     EXPECT_EQ(world.body(world.ids()[6]).velocity_mps, Vec2d(0, 0));
     EXPECT_EQ(world.contacts().size(), 6U);
+}
+
+TEST(Periodic, a_warm_world_asks_for_no_memory) {
+    constexpr std::uint64_t kSeed = 606;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    World<double> world(periodic_gas(40, 16.0, dice));
+    for (int tick = 0; tick < 600; ++tick) world.step(kTick);
+    const std::size_t before = allocations();
+    EXPECT_GT(before, 0U);
+    for (int tick = 0; tick < 200; ++tick) world.step(kTick);
+    EXPECT_EQ(allocations(), before);
 }
 
 TEST(Periodic, single_precision_holds_too) {
