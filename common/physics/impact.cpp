@@ -15,7 +15,9 @@ std::optional<Impact<Scalar>> impact(const Mover<Scalar>& first, const Mover<Sca
     if (!(rate < Scalar(0)) || !(distance_squared > Scalar(0)) || !(inverse_mass > Scalar(0))) {
         return std::nullopt;
     }
-    const Scalar strength = -(Scalar(1) + restitution) * (rate / distance_squared) / inverse_mass;
+    Scalar strength = -(Scalar(1) + restitution) * (rate / distance_squared) / inverse_mass;
+    const Vec2<Scalar> parting = w + strength * d / first.mass_kg + strength * d / second.mass_kg;
+    strength -= (d.dot(parting) + restitution * rate) / distance_squared / inverse_mass;
     const Vec2<Scalar> impulse = strength * d;
     const Scalar distance = std::sqrt(distance_squared);
     return Impact<Scalar>{d / distance, strength * distance,

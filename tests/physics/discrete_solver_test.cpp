@@ -162,7 +162,7 @@ TEST(DiscreteSolver, gives_the_impulse_of_the_vector_form) {
         EXPECT_LE((contact.velocity_a_after_mps - hit->velocity_1_mps).norm(), 1e-14 * 30);
         EXPECT_LE((contact.velocity_b_after_mps - hit->velocity_2_mps).norm(), 1e-14 * 30);
         EXPECT_LE((contact.normal - hit->normal).norm(), 1e-15 * 4);
-        EXPECT_NEAR(contact.impulse_ns / hit->impulse_ns, 1.0, 1e-14);
+        EXPECT_NEAR(contact.impulse_ns / hit->impulse_ns, 1.0, 1e-13);
         EXPECT_LE(world.deepest_overlap(), 1e-14) << "parted until they touch";
     }
     EXPECT_GT(hits, 500);
