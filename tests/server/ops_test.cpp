@@ -56,8 +56,12 @@ TEST(Options, come_from_flags_before_a_file_before_the_environment) {
 
 TEST(Options, are_refused_with_a_usage_code_when_they_make_no_sense) {
     const std::vector<std::vector<const char*>> nonsense = {
-        {"--no-such-flag"},  {"--port", "70000"},     {"--port", "seven"},      {"--arenas", "0"},
-        {"--players", "65"}, {"--log-level", "loud"}, {"--config", "/nowhere"}, {"stray"}};
+        {"--no-such-flag"},       {"--port", "70000"},
+        {"--port", "seven"},      {"--arenas", "0"},
+        {"--players", "65"},      {"--log-level", "loud"},
+        {"--config", "/nowhere"}, {"stray"},
+        {"--fidelity", "good"},   {"--fidelity", "0"},
+        {"--fidelity", "1.5"},    {"--fidelity", "nan"}};
     for (const auto& arguments : nonsense) {
         SCOPED_TRACE(arguments[0]);
         const auto parsed = parse(arguments);
@@ -65,6 +69,13 @@ TEST(Options, are_refused_with_a_usage_code_when_they_make_no_sense) {
         EXPECT_EQ(parsed.exit_code, kExitUsage);
     }
     EXPECT_EQ(parse({"--help"}).exit_code, 0);
+}
+
+TEST(Options, name_how_exact_collisions_are) {
+    EXPECT_EQ(parse({}).options->tolerance, physics::kAutoTolerance);
+    EXPECT_EQ(parse({"--fidelity", "fast"}).options->tolerance, physics::kFastTolerance);
+    EXPECT_EQ(parse({"--fidelity", "exact"}).options->tolerance, physics::kExactTolerance);
+    EXPECT_EQ(parse({"--fidelity", "0.003"}).options->tolerance, 0.003);
 }
 
 TEST(Options, refuse_a_file_with_a_setting_that_does_not_exist) {

@@ -48,7 +48,11 @@ game::Level quiet_level(int number, const physics::Platform& platform, int ai_ba
 }
 
 MatchBench::MatchBench(std::vector<game::Level> levels, std::uint64_t seed, int max_players)
-    : match({.arena = 0, .seed = seed, .levels = std::move(levels), .max_players = max_players},
+    : match({.arena = 0,
+             .seed = seed,
+             .levels = std::move(levels),
+             .max_players = max_players,
+             .solvers = {}},
             ledger) {}
 
 PlayerId MatchBench::join(int number, std::int64_t coins) {
