@@ -4,9 +4,10 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "common/physics/world.h"
-#include "server/lab/exact_tick.h"
+#include "server/lab/decided_tick.h"
 #include "server/lab/oracle.h"
 #include "server/lab/tick_comparison.h"
 
@@ -104,6 +105,8 @@ class Runner {
     Vec2d outer_impulse_ns(const World<Scalar>& world) const;
     void conclude(const World<Scalar>& world, const Conserved& start, const Vec2d& expected_ns,
                   Accuracy& accuracy) const;
+
+    static constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
 
     const Scene& scene_;
     const Setting setting_;
@@ -227,13 +230,14 @@ bool Runner<Scalar>::compare_ticks(const SamplingLimits& limits, const KeepGoing
             break;
         }
         world.step(tick_s_);
-        const auto exact = exact_tick(before, static_cast<double>(tick_s_),
-                                      std::min(limits.work_of_a_tick, work_left));
-        if (!exact) {
+        const auto [verdict, exact] = decided_tick(before, static_cast<double>(tick_s_), kEpsilon,
+                                                   std::min(limits.work_of_a_tick, work_left));
+        if (verdict == Verdict::kUndecided) comparison.add_undecided();
+        if (verdict == Verdict::kTooBusy) {
             comparison.add_too_busy();
             work_left -= limits.work_of_a_tick;
-            continue;
         }
+        if (!exact) continue;
         work_left -= exact->work;
         std::vector<Vec2d> velocities;
         for (const BodyDef& body : bodies_of(world)) velocities.push_back(body.velocity_mps);

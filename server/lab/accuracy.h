@@ -41,7 +41,9 @@ struct SamplingLimits {
 struct LocalAccuracy {
     std::size_t ticks = 0;           // compared, in which something collided
     std::size_t ticks_too_busy = 0;  // left out: beyond work_of_a_tick
-    std::size_t collisions = 0;      // exact ones, of balls and with walls
+    // Left out: a collision so near the end of the tick that round-off decides in which tick it is.
+    std::size_t ticks_undecided = 0;
+    std::size_t collisions = 0;  // exact ones, of balls and with walls
     std::size_t matched = 0, missed = 0, extra = 0;
     // As in common/physics/fidelity.h; and what it would be if every collision were ignored.
     std::optional<double> collision_error, error_of_ignoring;

@@ -17,6 +17,7 @@ Json figure(const std::optional<double>& value) {
 Json local_json(const LocalAccuracy& local) {
     return {{"ticks", local.ticks},
             {"ticks_too_busy", local.ticks_too_busy},
+            {"ticks_undecided", local.ticks_undecided},
             {"collisions", local.collisions},
             {"matched", local.matched},
             {"missed", local.missed},

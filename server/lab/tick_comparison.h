@@ -40,6 +40,7 @@ class TickComparison {
              const std::vector<physics::Vec2d>& solver_velocity_after_mps,
              const std::vector<SeenContact>& solver_contacts, double tick_s);
     void add_too_busy() { ++sums_.ticks_too_busy; }
+    void add_undecided() { ++sums_.ticks_undecided; }
 
     LocalAccuracy result() const;
 

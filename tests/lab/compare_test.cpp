@@ -137,6 +137,21 @@ TEST(Accuracy, drag_is_no_error) {
     EXPECT_LT(accuracy.global.momentum_error.value(), 1e-11);
 }
 
+TEST(Accuracy, a_hit_at_the_very_end_of_a_tick_is_nobodys_error) {
+    // They touch after exactly 60 ticks.
+    Scene scene;
+    scene.bodies = {{{-2.0, 0.0}, {1.0, 0.0}, 0.5, 1.0}, {{2.0, 0.0}, {-2.0, 0.0}, 0.5, 1.0}};
+    for (const ScalarKind scalar : {ScalarKind::kFloat, ScalarKind::kDouble}) {
+        for (const SolverKind kind : {SolverKind::kSwept, SolverKind::kEvent}) {
+            SCOPED_TRACE(to_string(setting(kind, 1, scalar)));
+            const auto local = accuracy_of(scene, setting(kind, 1, scalar), 90).local;
+            EXPECT_GE(local.ticks_undecided, 1U);
+            EXPECT_EQ(local.missed + local.extra, 0U);
+            EXPECT_LT(local.collision_error.value_or(0.0), 1e-5);
+        }
+    }
+}
+
 TEST(ExactTick, groups_of_bodies_give_what_the_whole_scene_gives) {
     for (const double speed : {0.1, 1.0, 5.0}) {
         SCOPED_TRACE(speed);
