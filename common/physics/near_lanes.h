@@ -64,6 +64,34 @@ inline std::uint32_t near_lanes<float>(const float* x, const float* y, float at_
         _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_set1_ps(reach_squared))));
 }
 
+template <>
+inline std::uint32_t overlapping_lanes<double>(const double* x, const double* y,
+                                               const double* radius, double at_x, double at_y,
+                                               double at_radius) {
+    const __m128d all_x = _mm_set1_pd(at_x), all_y = _mm_set1_pd(at_y);
+    const __m128d all_radius = _mm_set1_pd(at_radius);
+    const auto two = [&](std::uint32_t k) {
+        const __m128d dx = _mm_sub_pd(_mm_loadu_pd(x + k), all_x);
+        const __m128d dy = _mm_sub_pd(_mm_loadu_pd(y + k), all_y);
+        const __m128d reach = _mm_add_pd(_mm_loadu_pd(radius + k), all_radius);
+        const __m128d squared = _mm_add_pd(_mm_mul_pd(dx, dx), _mm_mul_pd(dy, dy));
+        return static_cast<std::uint32_t>(
+            _mm_movemask_pd(_mm_cmplt_pd(squared, _mm_mul_pd(reach, reach))));
+    };
+    return two(0) | two(2) << 2;
+}
+
+template <>
+inline std::uint32_t overlapping_lanes<float>(const float* x, const float* y, const float* radius,
+                                              float at_x, float at_y, float at_radius) {
+    const __m128 dx = _mm_sub_ps(_mm_loadu_ps(x), _mm_set1_ps(at_x));
+    const __m128 dy = _mm_sub_ps(_mm_loadu_ps(y), _mm_set1_ps(at_y));
+    const __m128 reach = _mm_add_ps(_mm_loadu_ps(radius), _mm_set1_ps(at_radius));
+    const __m128 squared = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy));
+    return static_cast<std::uint32_t>(
+        _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach))));
+}
+
 #endif
 
 }  // namespace fts::physics

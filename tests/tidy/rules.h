@@ -70,6 +70,7 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
      false},
     {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
+    {"the compiler's vector instructions", "emmintrin.h", "common/physics/near_lanes.h", false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",
      "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests",
      true},
