@@ -11,6 +11,7 @@
 
 #include "common/physics/fidelity.h"
 #include "server/lab/exit_codes.h"
+#include "server/lab/number_option.h"
 #include "server/lab/output.h"
 #include "server/lab/scene_argument.h"
 
@@ -103,7 +104,7 @@ void add_plan(CLI::App& app, int& exit_code) {
                      "exact")
         ->required();
     command->add_option("--rate", options->rate_hz, "Ticks per second")
-        ->check(CLI::Range(1e-4, 1e9))
+        ->check(number_from(1e-4, 1e9))
         ->capture_default_str();
     command->add_flag("--double", options->only_double, "No single precision");
     command->add_option("--json", options->json_file, "File for the plan; - for the terminal");

@@ -11,6 +11,7 @@
 
 #include "common/physics/fidelity.h"
 #include "server/lab/exit_codes.h"
+#include "server/lab/number_option.h"
 #include "server/lab/output.h"
 #include "server/lab/progress_bar.h"
 #include "server/lab/run.h"
@@ -193,10 +194,10 @@ void add_run(CLI::App& app, int& exit_code) {
                      "Of --solver auto: auto, fast, exact, or a collision error above 0")
         ->capture_default_str();
     command->add_option("--rate", options->rate_hz, "Ticks per second")
-        ->check(CLI::Range(1e-4, 1e9))
+        ->check(number_from(1e-4, 1e9))
         ->capture_default_str();
     command->add_option("--seconds", options->seconds, "How long, in the scene's time")
-        ->check(CLI::Range(0.0, 1e12))
+        ->check(number_from(0.0, 1e12))
         ->required();
     command->add_option("--json", options->json_file, "File for the figures; - for the terminal");
     command->add_option("--csv", options->csv_file,
@@ -204,7 +205,7 @@ void add_run(CLI::App& app, int& exit_code) {
                         "terminal");
     command
         ->add_option("--csv-rate", options->csv_rate_hz, "Samples per second; each tick by default")
-        ->check(CLI::Range(1e-9, 1e9));
+        ->check(number_from(1e-9, 1e9));
     command->callback([options, &exit_code] { exit_code = execute(*options); });
 }
 

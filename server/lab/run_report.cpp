@@ -43,10 +43,12 @@ std::string text_of(const RunReport& report) {
     fact("kinetic energy",
          fmt::format("{:.9g} J, then {:.9g} J: a change of {:+.2e}", result.energy_at_start_j,
                      result.energy_at_end_j, result.energy_error()));
-    fact("momentum", fmt::format("({:.4g}, {:.4g}) Ns, then ({:.4g}, {:.4g}) Ns: {:.2e} of all |p|",
+    fact("momentum", fmt::format("({:.4g}, {:.4g}) Ns, then ({:.4g}, {:.4g}) Ns: {}",
                                  result.momentum_at_start_ns.x(), result.momentum_at_start_ns.y(),
                                  result.momentum_at_end_ns.x(), result.momentum_at_end_ns.y(),
-                                 result.momentum_error()));
+                                 audit.wall_collisions > 0
+                                     ? "walls push"
+                                     : fmt::format("{:.2e} of all |p|", result.momentum_error())));
     fact("worst energy error", fmt::format("{:.2e} of the pair's energy, in any one collision",
                                            audit.worst_energy_error));
     fact("worst momentum error", fmt::format("{:.2e} of the pair's momentum, in any one collision",

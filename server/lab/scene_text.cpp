@@ -141,10 +141,21 @@ physics::Scene scene_of(const scene::Scene& file) {
     return scene;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
+bool is_of_a_name(char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+}
+
+// Whole names only: "radius_m", but not in "radius_min".
+void rename_all(std::string& text, std::string_view from, std::string_view to) {
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
-        text.replace(at, from.size(), to);
-        at += to.size();
+        const std::size_t end = at + from.size();
+        const bool begins = at == 0 || !is_of_a_name(text[at - 1]);
+        if (begins && (end == text.size() || !is_of_a_name(text[end]))) {
+            text.replace(at, from.size(), to);
+            at += to.size();
+        } else {
+            at = end;
+        }
     }
 }
 
@@ -200,10 +211,10 @@ std::string in_words_of_the_file(std::string message,
     if (message.starts_with("platform.") && platform) {
         constexpr std::array<std::string_view, 3> kShapes = {"disc.", "rectangle.", "ring."};
         message.insert(std::string_view("platform.").size(), kShapes[platform->index()]);
-        replace_all(message, "half_extents_m.x is", "width_m, halved, is");
-        replace_all(message, "half_extents_m.y is", "height_m, halved, is");
-        replace_all(message, "half_extents_m.x", "width_m");
-        replace_all(message, "half_extents_m.y", "height_m");
+        rename_all(message, "half_extents_m.x is", "width_m, halved, is");
+        rename_all(message, "half_extents_m.y is", "height_m, halved, is");
+        rename_all(message, "half_extents_m.x", "width_m");
+        rename_all(message, "half_extents_m.y", "height_m");
         return message;
     }
     constexpr std::pair<std::string_view, std::string_view> kNames[] = {
@@ -211,7 +222,7 @@ std::string in_words_of_the_file(std::string message,
         {"velocity_mps", "velocity"}, {"min_m", "min"},    {"max_m", "max"},
         {"drag_per_s", "drag"},
     };
-    for (const auto& [from, to] : kNames) replace_all(message, from, to);
+    for (const auto& [from, to] : kNames) rename_all(message, from, to);
     return message;
 }
 
