@@ -147,23 +147,33 @@ void Oracle::Impl::predict_pair(std::size_t a, std::size_t b, Quad now, Quad sli
 }
 
 void Oracle::Impl::predict_images(std::size_t a, std::size_t b, Quad now, Quad slice) {
+    const Images x = images_that_may_meet(boxes[a], boxes[b], 0);
+    if (x.first > x.last) return;
+    const Images y = images_that_may_meet(boxes[a], boxes[b], 1);
+    if (y.first > y.last) return;
     const physics::Vec2d extent = rules.periodic->max_m - rules.periodic->min_m;
-    int from[2], to[2];
-    for (int axis = 0; axis < 2; ++axis) {
-        const double apart = boxes[b].min[axis] - boxes[a].max[axis];
-        const double beyond = boxes[b].max[axis] - boxes[a].min[axis];
-        from[axis] = static_cast<int>(std::ceil(apart / extent[axis]));
-        to[axis] = static_cast<int>(std::floor(beyond / extent[axis]));
-    }
     const Touch touch{a, b, false};
     const QuadVec d = balls[a].position - balls[b].position;
     const QuadVec w = relative_velocity(touch);
-    for (int i = from[0]; i <= to[0]; ++i) {
-        for (int j = from[1]; j <= to[1]; ++j) {
+    for (int i = x.first; i <= x.last; ++i) {
+        for (int j = y.first; j <= y.last; ++j) {
             const QuadVec shift{Quad(i) * Quad(extent.x()), Quad(j) * Quad(extent.y())};
             expect(touch, time_until_contact(d + shift, w, touch), now, slice);
         }
     }
+}
+
+// By how many widths of the box the first may be shifted to overlap the second: a range, empty
+// where `first` is above `last`.
+oracle::Images Oracle::Impl::images_that_may_meet(const Box& first, const Box& second,
+                                                  int axis) const {
+    const double width = rules.periodic->max_m[axis] - rules.periodic->min_m[axis];
+    const double least = (second.min[axis] - first.max[axis]) / width;
+    const double most = (second.max[axis] - first.min[axis]) / width;
+    int from = static_cast<int>(least), to = static_cast<int>(most);
+    if (from < least) ++from;
+    if (to > most) --to;
+    return {from, to};
 }
 
 void Oracle::Impl::predict_walls(std::size_t ball, Quad now, Quad slice) {

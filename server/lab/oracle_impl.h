@@ -24,6 +24,10 @@ struct Box {
     double min[2], max[2];
 };
 
+struct Images {
+    int first, last;
+};
+
 // Two balls, or a ball and one of the sides.
 struct Touch {
     std::size_t a;
@@ -51,6 +55,7 @@ struct Oracle::Impl {
     using Ball = oracle::Ball;
     using Box = oracle::Box;
     using Constraint = oracle::Constraint;
+    using Images = oracle::Images;
     using Meeting = oracle::Meeting;
     using Touch = oracle::Touch;
 
@@ -63,6 +68,7 @@ struct Oracle::Impl {
     void predict(std::size_t ball, Quad now, Quad slice, std::size_t others_from);
     void predict_pair(std::size_t a, std::size_t b, Quad now, Quad slice);
     void predict_images(std::size_t a, std::size_t b, Quad now, Quad slice);
+    Images images_that_may_meet(const Box& first, const Box& second, int axis) const;
     void predict_walls(std::size_t ball, Quad now, Quad slice);
     void expect(const Touch& touch, Quad wait, Quad now, Quad slice);
     Quad time_until_contact(const QuadVec& d, const QuadVec& w, const Touch& touch) const;
