@@ -14,10 +14,14 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kScalarNames = {"float", "double"};
 
-// The line of centres of a pair that is found s after it touched is off by s sin(theta) / R, with s
-// uniform below the approach of one substep. Averaged over impact parameters and the speeds of a
-// gas that is 0.3 of the displacement in radii; the bound leaves room for fat tails.
+// What overlaps tell late: the line of centres of a pair that is found s after it touched is off by
+// s sin(theta) / R, with s uniform below the approach of one substep. Averaged over impact
+// parameters and the speeds of a gas that is 0.3 of the displacement in radii.
 constexpr double kDiscreteErrorPerRadius = 0.9;
+// And what they do not tell: a body that should have turned in a substep misses whom it would have
+// met next. The square of the error is about the number of collisions of a body in a substep; both
+// bounds leave room for the scatter of samples (docs/accuracy.md).
+constexpr double kDiscreteErrorPerCollision = 3.0;
 // Beyond this displacement in radii per substep pairs begin to pass through each other.
 constexpr double kMaxDiscreteStepInRadii = 0.25;
 // Fewer bodies that coast collide too rarely for an average to mean something.
@@ -32,9 +36,9 @@ struct Cost {
     double per_body_tick;  // per substep
     double per_collision;
 };
-constexpr Cost kDiscreteCost = {25.0, 60.0};
-constexpr Cost kSweptCost = {75.0, 1500.0};
-constexpr Cost kEventCost = {1.0, 2500.0};
+constexpr Cost kDiscreteCost = {20.0, 100.0};
+constexpr Cost kSweptCost = {150.0, 1500.0};
+constexpr Cost kEventCost = {0.5, 1900.0};
 constexpr double kFloatCostRatio = 0.85;
 
 struct Scale {
@@ -43,6 +47,9 @@ struct Scale {
     double extent_m = 0.0;  // the largest coordinate
     double step_in_radii = 0.0;
     double collisions_per_body_tick = 0.0;
+    double hits_per_body_tick() const {
+        return 2.0 * collisions_per_body_tick;
+    }  // it has two sides
 };
 
 struct Candidate {
@@ -157,11 +164,22 @@ bool crowd_may_be_discrete(const Scale& scale, const Fidelity& fidelity) {
            scale.largest_radius_m <= kMaxDiscreteRadiusRatio * scale.smallest_radius_m;
 }
 
-// The fewest substeps that meet the tolerance; above kMaxSubsteps when none do.
+double discrete_error(const Scale& scale, double substeps) {
+    const double late = kDiscreteErrorPerRadius * scale.step_in_radii / substeps;
+    const double missed = kDiscreteErrorPerCollision * scale.hits_per_body_tick() / substeps;
+    return std::sqrt(late * late + missed);
+}
+
+// The fewest substeps that meet the tolerance, where discrete_error is a quadratic in their
+// inverse; above kMaxSubsteps when none do.
 double substeps_needed(const Scale& scale, const Fidelity& fidelity) {
-    const double for_tolerance = kDiscreteErrorPerRadius * scale.step_in_radii / fidelity.tolerance;
+    const double late = kDiscreteErrorPerRadius * scale.step_in_radii;
+    const double missed = kDiscreteErrorPerCollision * scale.hits_per_body_tick();
+    const double squared = fidelity.tolerance * fidelity.tolerance;
+    const double for_tolerance =
+        (missed + std::sqrt(missed * missed + 4.0 * squared * late * late)) / (2.0 * squared);
     const double for_contact = scale.step_in_radii / kMaxDiscreteStepInRadii;
-    return std::ceil(std::max({1.0, for_tolerance, for_contact}));
+    return std::ceil(std::max({1.0, 1.001 * for_tolerance, for_contact}));
 }
 
 std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) {
@@ -178,7 +196,7 @@ std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) 
         const double substeps = substeps_needed(scale, fidelity);
         if (!crowd_may_be_discrete(scale, fidelity) || !(substeps <= kMaxSubsteps)) continue;
         const auto count = static_cast<std::uint32_t>(substeps);
-        const double error = kDiscreteErrorPerRadius * scale.step_in_radii / substeps + rounding;
+        const double error = std::max(rounding, discrete_error(scale, substeps));
         found.push_back({{SolverKind::kDiscrete, count},
                          scalar,
                          error,

@@ -29,7 +29,7 @@ std::optional<ScalarKind> scalar_from(std::string_view name);
 
 // What a host calls them.
 inline constexpr double kAutoTolerance = 1e-6;
-inline constexpr double kFastTolerance = 0.05;
+inline constexpr double kFastTolerance = 0.1;
 inline constexpr double kExactTolerance = 0.0;
 
 struct Fidelity {
