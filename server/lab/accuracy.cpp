@@ -247,6 +247,11 @@ bool Runner<Scalar>::compare_ticks(const SamplingLimits& limits, const KeepGoing
                        static_cast<double>(tick_s_));
     }
     accuracy.local = comparison.result();
+    if (accuracy.local.ticks_undecided > 0) {
+        accuracy.remarks.push_back(std::to_string(accuracy.local.ticks_undecided) +
+                                   " ticks are left out: round-off decides whether a collision is "
+                                   "in them or in the next");
+    }
     if (accuracy.local.ticks_too_busy > 0) {
         accuracy.remarks.push_back(std::to_string(accuracy.local.ticks_too_busy) +
                                    " ticks had more collisions than the oracle was given time for");
