@@ -65,9 +65,11 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"stb", "stb_", "client/sdl", true},
     {"SQLite", "sqlite3.h", "server/economy", true},
     {"CLI11", "CLI/",
-     "server/main.cpp server/lab server/ops client/sdl/main.cpp client/bot/main.cpp", false},
-    {"spdlog", "spdlog/ fmt/", "server/main.cpp server/ops client/sdl/main.cpp client/bot/main.cpp",
+     "server/main.cpp tests/accuracy/main.cpp server/lab server/ops client/sdl/main.cpp "
+     "client/bot/main.cpp",
      false},
+    {"spdlog", "spdlog/ fmt/",
+     "server/main.cpp server/lab server/ops client/sdl/main.cpp client/bot/main.cpp", false},
     {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
     {"the compiler's vector instructions", "emmintrin.h", "common/physics/near_lanes.h", false},
