@@ -272,8 +272,10 @@ std::string reason_for(const Candidate& choice, const std::vector<Candidate>& al
             return rank(a) < rank(b);
         });
     if (runner_up->solver.kind != choice.solver.kind && runner_up->error <= fidelity.tolerance) {
-        reason += ", at about " + text_of(choice.cost_ns / runner_up->cost_ns) +
-                  " of the time of " + std::string(to_string(runner_up->solver.kind));
+        const double ratio = runner_up->cost_ns / choice.cost_ns;
+        const std::string name(to_string(runner_up->solver.kind));
+        reason += ratio < 1.2 ? "; " + name + " would take about as long"
+                              : "; " + name + " would take " + text_of(ratio) + " times as long";
     }
     return reason + ".";
 }
