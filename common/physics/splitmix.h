@@ -1,6 +1,6 @@
 // SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): a
-// seed gives the same numbers on every machine. For making scenes; nothing secret, and nothing that
-// a simulation draws from.
+// seed gives the same numbers on every machine. For making scenes and matches; no solver draws from
+// it, and it keeps no secret.
 #pragma once
 
 #include <cassert>
