@@ -27,7 +27,7 @@ constexpr double kCollisionsOfABallToDiverge = 60.0;
 
 // The exact ones, of which there can be many in a tick, are what takes the time.
 constexpr lab::SamplingLimits kSampling = {
-    .collisions = 300, .work_of_a_tick = 1e6, .work = 1.5e6, .work_of_reference = 6e6};
+    .collisions = 1000, .work_of_a_tick = 1e6, .work = 1.5e6, .work_of_reference = 6e6};
 
 std::string number(double value) {
     char text[32];

@@ -211,7 +211,7 @@ Figure cost_over_size(const CellStore& cells) {
 
 Figure error_over_impact_parameter(const CellStore& cells) {
     Plot plot;
-    plot.title = "Grazing hits are the hardest";
+    plot.title = "Only a head-on hit forgives a late look";
     plot.subtitle =
         "64 pairs of equal balls, one at rest, at 0.1 radii a tick; b is how far the one passes "
         "the "

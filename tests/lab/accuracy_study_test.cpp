@@ -93,7 +93,7 @@ TEST(AccuracyPage, has_figures_even_before_anything_is_measured) {
     for (const Figure& figure : figures_of(store)) {
         EXPECT_THAT(lab::render_svg(figure.plot), Not(HasSubstr("nan"))) << figure.file;
     }
-    EXPECT_EQ(tables_of(store).size(), 5U);
+    EXPECT_EQ(tables_of(store).size(), 6U);
 }
 
 }  // namespace
