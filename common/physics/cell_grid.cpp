@@ -195,7 +195,7 @@ void CellGrid<Scalar>::search(Scalar reach_squared, std::vector<DiscPair>& pairs
     const std::uint32_t* const first = first_.data();
     const auto search_run = [&](std::uint32_t i, std::uint32_t j, std::uint32_t end) {
         do {
-            std::uint32_t near;
+            std::uint32_t near = 0;
             if constexpr (kEqualRadii) {
                 near = near_lanes(x + j, y + j, x[i], y[i], reach_squared);
             } else {

@@ -43,7 +43,7 @@ class DiscGrid {
     bool is_periodic_;
     Vec2d min_m_;
     Vec2d cells_per_m_;
-    std::int64_t cells_[2];
+    std::int64_t cells_[2] = {1, 1};
     std::vector<std::uint32_t> first_node_;
     std::vector<Node> nodes_;
 };

@@ -22,12 +22,12 @@ struct OnlyImage {
 
 template <typename Scalar, typename Image = OnlyImage>
 struct Event {
-    Scalar time_s;
-    EventKind kind;
-    std::uint32_t a;
-    std::uint32_t b;        // the other ball, or the side of the box: -x, +x, -y, +y
-    std::uint32_t count_a;  // what had happened to `a` when this was predicted
-    std::uint32_t count_b;
+    Scalar time_s = Scalar(0);
+    EventKind kind = EventKind::kBall;
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;        // the other ball, or the side of the box: -x, +x, -y, +y
+    std::uint32_t count_a = 0;  // what had happened to `a` when this was predicted
+    std::uint32_t count_b = 0;
     [[no_unique_address]] Image image = {};
 
     bool operator>(const Event& other) const {

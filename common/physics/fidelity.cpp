@@ -149,6 +149,14 @@ double cost_ns(const Cost& cost, const Scale& scale, std::uint32_t substeps, Sca
     return scalar == ScalarKind::kFloat ? kFloatCostRatio * ns : ns;
 }
 
+// Each further collision of a body within the tick multiplies what was wrong before it, by about
+// the path between two collisions over the radius.
+double growth_in_a_tick(const Scale& scale) {
+    const double hits = scale.hits_per_body_tick();
+    const double path_in_radii = hits > 0.0 ? scale.step_in_radii / hits : 0.0;
+    return std::pow(2.0 + 2.0 * path_in_radii, hits);
+}
+
 double round_off(ScalarKind scalar, const Scale& scale) {
     const double epsilon = scalar == ScalarKind::kFloat
                                ? static_cast<double>(std::numeric_limits<float>::epsilon())
@@ -156,7 +164,7 @@ double round_off(ScalarKind scalar, const Scale& scale) {
     const double lengths =
         scale.bodies == 0 ? 1.0
                           : 1.0 + scale.extent_m / scale.smallest_radius_m + scale.step_in_radii;
-    return kExactErrorInUlps * epsilon * lengths;
+    return kExactErrorInUlps * epsilon * lengths * growth_in_a_tick(scale);
 }
 
 bool crowd_may_be_discrete(const Scale& scale, const Fidelity& fidelity) {
@@ -167,7 +175,7 @@ bool crowd_may_be_discrete(const Scale& scale, const Fidelity& fidelity) {
 double discrete_error(const Scale& scale, double substeps) {
     const double late = kDiscreteErrorPerRadius * scale.step_in_radii / substeps;
     const double missed = kDiscreteErrorPerCollision * scale.hits_per_body_tick() / substeps;
-    return std::sqrt(late * late + missed);
+    return std::sqrt(late * late + missed) * growth_in_a_tick(scale);
 }
 
 // The fewest substeps that meet the tolerance, where discrete_error is a quadratic in their
@@ -175,7 +183,8 @@ double discrete_error(const Scale& scale, double substeps) {
 double substeps_needed(const Scale& scale, const Fidelity& fidelity) {
     const double late = kDiscreteErrorPerRadius * scale.step_in_radii;
     const double missed = kDiscreteErrorPerCollision * scale.hits_per_body_tick();
-    const double squared = fidelity.tolerance * fidelity.tolerance;
+    const double tolerance = fidelity.tolerance / growth_in_a_tick(scale);
+    const double squared = tolerance * tolerance;
     const double for_tolerance =
         (missed + std::sqrt(missed * missed + 4.0 * squared * late * late)) / (2.0 * squared);
     const double for_contact = scale.step_in_radii / kMaxDiscreteStepInRadii;

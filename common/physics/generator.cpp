@@ -264,10 +264,10 @@ std::variant<Scene, SceneError> fill(Scene scene, const Generator& generator) {
     }
     set_masses(balls, generator.mass);
     set_velocities(balls, generator.speed_rms_mps, random);
-    for (std::size_t i = 0; i < balls.size(); ++i) {
+    for (const BodyDef& ball : balls) {
         const std::string name = "generator's body[" + std::to_string(scene.bodies.size()) + "]";
-        if (auto error = validate(balls[i], scene, name)) return *error;
-        scene.bodies.push_back(balls[i]);
+        if (auto error = validate(ball, scene, name)) return *error;
+        scene.bodies.push_back(ball);
     }
     return scene;
 }

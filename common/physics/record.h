@@ -15,15 +15,15 @@ template <typename Scalar>
 struct Contact {
     BodyId a;
     std::optional<BodyId> b;
-    Scalar time_s;         // since the start of the step, [0, h]
-    Vec2<Scalar> point_m;  // where the surfaces touched
-    Vec2<Scalar> normal;   // unit, from b (or the wall) towards a
-    Scalar impulse_ns;     // > 0, given to a along the normal
+    Scalar time_s = Scalar(0);      // since the start of the step, [0, h]
+    Vec2<Scalar> point_m;           // where the surfaces touched
+    Vec2<Scalar> normal;            // unit, from b (or the wall) towards a
+    Scalar impulse_ns = Scalar(0);  // > 0, given to a along the normal
     // In a periodic scene that of b is of the image that a touched.
     Vec2<Scalar> position_a_m, position_b_m;
     Vec2<Scalar> velocity_a_before_mps, velocity_a_after_mps;
     Vec2<Scalar> velocity_b_before_mps, velocity_b_after_mps;  // zero for a wall
-    Scalar mass_a_kg, mass_b_kg;                               // b infinite for a wall
+    Scalar mass_a_kg = Scalar(0), mass_b_kg = Scalar(0);       // b infinite for a wall
     // How far the discs overlapped when the hit was found, in units of the smaller radius: 0 but
     // for round-off where times of impact are exact.
     Scalar penetration = Scalar(0);

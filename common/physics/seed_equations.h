@@ -84,9 +84,10 @@ struct Velocities {
 // Equation by equation: what the paper's derivation has on its way.
 template <typename Scalar>
 struct Derivation {
-    Turned<Scalar> first, second;              // (4) to (7)
-    Scalar first_along_mps, second_along_mps;  // (12), (13): (11) of (4) and (6)
-    Velocities<Scalar> after;                  // (14) to (17)
+    Turned<Scalar> first, second;  // (4) to (7)
+    Scalar first_along_mps = Scalar(0),
+           second_along_mps = Scalar(0);  // (12), (13): (11) of (4) and (6)
+    Velocities<Scalar> after;             // (14) to (17)
 };
 template <typename Scalar>
 Derivation<Scalar> derivation(const Ball<Scalar>& first, const Ball<Scalar>& second,

@@ -145,10 +145,10 @@ class ContactSet {
     static constexpr std::uint32_t kNone = 0xffffffff;
 
     struct Member {
-        std::uint32_t body;
-        Vec velocity_mps;
-        Scalar mass_kg;
-        Scalar speed_scale_mps;  // the largest speed it had or was given
+        std::uint32_t body = kNoBody;
+        Vec velocity_mps = Vec::Zero();
+        Scalar mass_kg = Scalar(0);
+        Scalar speed_scale_mps = Scalar(0);  // the largest speed it had or was given
         std::uint32_t first_contact = kNone;
         std::uint32_t parent = kNone;  // in the forest of components
         std::uint32_t in_projection = kNone;
@@ -158,16 +158,16 @@ class ContactSet {
         bool is_immovable = false;
     };
     struct Touch {
-        std::uint32_t a, b;            // members; b kNone for a wall
-        std::uint32_t next_a, next_b;  // the next contact of a, of b
-        std::uint32_t side = 0;        // of the box, when it is a wall
-        Vec separation_m, normal;
+        std::uint32_t a = kNone, b = kNone;            // members; b kNone for a wall
+        std::uint32_t next_a = kNone, next_b = kNone;  // the next contact of a, of b
+        std::uint32_t side = 0;                        // of the box, when it is a wall
+        Vec separation_m = Vec::Zero(), normal = Vec::Zero();
         bool is_due = false;
     };
     struct Projected {  // a member in projection_
-        std::uint32_t member;
-        Vec2d push_ns;     // what its contacts give it
-        double pushed_ns;  // the sum of their sizes
+        std::uint32_t member = kNone;
+        Vec2d push_ns = Vec2d::Zero();  // what its contacts give it
+        double pushed_ns = 0.0;         // the sum of their sizes
     };
     struct Approaching {
         std::uint32_t component;
@@ -228,7 +228,7 @@ Resolution ContactSet<Scalar>::resolve(Scalar restitution, LookAround&& look_aro
             return done;
         }
         ++done.passes;
-        for (std::size_t first = 0, last; first < approaching_.size(); first = last) {
+        for (std::size_t first = 0, last = 0; first < approaching_.size(); first = last) {
             last = first + 1;
             while (last < approaching_.size() &&
                    approaching_[last].component == approaching_[first].component) {

@@ -13,7 +13,7 @@ bool of_one_series(const Setting& a, const Setting& b) {
 
 // The solver's name once, at the first of its points; then the substeps.
 std::string label_of(const Setting& setting, bool first) {
-    const std::string steps =
+    std::string steps =
         has_substeps(setting) ? "\u00d7" + std::to_string(setting.solver.substeps) : "";
     if (!first) return steps;
     std::string name(physics::to_string(setting.solver.kind));
@@ -52,6 +52,7 @@ Plot cost_error_plot(const std::vector<CostErrorPoint>& points) {
     plot.x = {"cost, ns per ball and tick", Scale::kLog, {}, {}};
     plot.y = {"collision error E", Scale::kLog, {}, {}};
     std::vector<CostAndError> choices;
+    choices.reserve(points.size());
     for (const CostErrorPoint& point : points) choices.push_back({point.cost_ns, point.error});
     const auto front = pareto_front(choices);
 

@@ -15,8 +15,8 @@ inline constexpr std::size_t kSides = 4;  // of the box: -x, +x, -y, +y
 
 struct Ball {
     QuadVec position, velocity;
-    Quad radius, mass;
-    Quad inverse_mass;  // 0: no impact moves it
+    Quad radius = Quad(0), mass = Quad(0);
+    Quad inverse_mass = Quad(0);  // 0: no impact moves it
     bool is_movable() const { return inverse_mass > Quad(0); }
 };
 
@@ -30,9 +30,9 @@ struct Images {
 
 // Two balls, or a ball and one of the sides.
 struct Touch {
-    std::size_t a;
-    std::size_t b;
-    bool is_wall;
+    std::size_t a = 0;
+    std::size_t b = 0;
+    bool is_wall = false;
     friend bool operator==(const Touch&, const Touch&) = default;
 };
 

@@ -13,7 +13,7 @@ namespace fts::lab {
 #if LDBL_MANT_DIG == 113
 using Quad = long double;
 #else
-__extension__ typedef __float128 Quad;
+__extension__ using Quad = __float128;
 #endif
 
 // Newton's method doubles the right digits: 53 or more become 113 in two steps.
