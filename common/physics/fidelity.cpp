@@ -247,7 +247,7 @@ std::string why_this_kind(const Candidate& choice, const Fidelity& fidelity) {
                                    : "exact times of impact, and so many collisions a tick that a "
                                      "calendar of them would not pay";
         case SolverKind::kEvent:
-            return "exact times of impact, kept in a calendar because nothing accelerates between "
+            return "exact times of impact, kept in a calendar because nobody thrusts between "
                    "collisions";
         case SolverKind::kDiscrete:
             return "overlaps found after " + std::to_string(choice.solver.substeps) +

@@ -15,6 +15,9 @@
 namespace fts::physics {
 namespace {
 
+// Below it velocities are written down as they are, before they are lost in tiny numbers.
+constexpr double kLeastPace = 1e-6;
+
 template <typename Scalar>
 typename Model<Scalar>::Box box_of(const Vec2d& min_m, const Vec2d& max_m) {
     return {min_m.cast<Scalar>(), max_m.cast<Scalar>()};
@@ -55,9 +58,11 @@ struct World<Scalar>::Impl {
     std::unique_ptr<Solver<Scalar>> solver;
     bool anything_thrusts = false;
     bool changed = true;  // by others than the solver, since the last drift
+    // What the scene's drag has left of the velocities that the solver has.
+    double pace = 1.0;
 
     BodyId put(const BodyDef& body) {
-        changed = true;
+        to_be_changed();
         Vec2<Scalar> position_m = body.position_m.cast<Scalar>();
         if (model.periodic) position_m = wrapped<Scalar>(position_m, *model.periodic);
         return bodies.add(position_m, body.velocity_mps.cast<Scalar>(),
@@ -68,9 +73,16 @@ struct World<Scalar>::Impl {
         solver->synchronise(bodies);
         return bodies;
     }
+    // With true velocities.
     Bodies<Scalar>& to_be_changed() {
         changed = true;
-        return current();
+        current();
+        if (pace != 1.0) slow_down(bodies);
+        pace = 1.0;
+        return bodies;
+    }
+    void slow_down(Bodies<Scalar>& all) const {
+        for (const BodyId id : all.ids) all.velocity_mps[id.index] *= static_cast<Scalar>(pace);
     }
 
     DriftReport<Scalar> drift(Scalar span_s) {
@@ -104,42 +116,49 @@ DriftReport<Scalar> World<Scalar>::Impl::step_with_thrust(Scalar span_s) {
     return report;
 }
 
-// In the slower time s, in which drag is not felt. What the record has is told in time again.
+// In the slower time s, in which drag is not felt, and with velocities as they were when the drag
+// began to act: so that nothing changes for the solver, and what it predicted holds.
 template <typename Scalar>
 DriftReport<Scalar> World<Scalar>::Impl::step_with_drag(Scalar span_s) {
-    const double drag_per_s = rules.drag_per_s;
+    const double drag_per_s = rules.drag_per_s, pace_before = pace;
+    const auto slow_time_of = [&](Scalar passed_s) {
+        const auto seconds = static_cast<double>(passed_s);
+        return static_cast<Scalar>(seconds * decay(drag_per_s * seconds).mean * pace_before);
+    };
     const auto time_of = [&](Scalar slow_s) {
-        const double passed_s = -std::log1p(-drag_per_s * static_cast<double>(slow_s)) / drag_per_s;
+        const double felt_s = static_cast<double>(slow_s) / pace_before;
+        const double passed_s = -std::log1p(-std::min(1.0, drag_per_s * felt_s)) / drag_per_s;
         return std::min(static_cast<Scalar>(passed_s), span_s);
     };
-    const auto slow_time_of = [&](Scalar passed_s) {
-        const double mean = decay(drag_per_s * static_cast<double>(passed_s)).mean;
-        return static_cast<Scalar>(static_cast<double>(passed_s) * mean);
+    const auto pace_at = [&](Scalar passed_s) {
+        return pace_before * decay(drag_per_s * static_cast<double>(passed_s)).factor;
     };
+    const CollisionAudit audit_before = record.audit;
     const Scalar slow_span_s = slow_time_of(span_s);
     DriftReport<Scalar> report = drift(slow_span_s);
     if (report.overrun) {
         report.unspent_time_s = span_s - time_of(slow_span_s - report.unspent_time_s);
     }
-    const auto slowed = [&](Scalar passed_s) {
-        return static_cast<Scalar>(decay(drag_per_s * static_cast<double>(passed_s)).factor);
-    };
-    const Scalar kept = slowed(span_s - report.unspent_time_s);
-    Bodies<Scalar>& all = to_be_changed();
-    for (const BodyId id : all.ids) all.velocity_mps[id.index] *= kept;
+    pace = pace_at(span_s - report.unspent_time_s);
     for (Contact<Scalar>& contact : record.contacts) {
         contact.time_s = time_of(contact.time_s);
-        const Scalar kept_then = slowed(contact.time_s);
-        contact.impulse_ns *= kept_then;
-        contact.velocity_a_before_mps *= kept_then;
-        contact.velocity_a_after_mps *= kept_then;
-        contact.velocity_b_before_mps *= kept_then;
-        contact.velocity_b_after_mps *= kept_then;
+        const auto pace_then = static_cast<Scalar>(pace_at(contact.time_s));
+        contact.impulse_ns *= pace_then;
+        contact.velocity_a_before_mps *= pace_then;
+        contact.velocity_a_after_mps *= pace_then;
+        contact.velocity_b_before_mps *= pace_then;
+        contact.velocity_b_after_mps *= pace_then;
     }
     for (Fall<Scalar>& fall : record.falls) {
         fall.time_s = time_of(fall.time_s);
-        fall.velocity_mps *= slowed(fall.time_s);
+        fall.velocity_mps *= static_cast<Scalar>(pace_at(fall.time_s));
     }
+    const auto tell_true_energy = [&](double& sum_j, double before_j) {
+        sum_j = before_j + (sum_j - before_j) * pace_before * pace_before;
+    };
+    tell_true_energy(record.audit.energy_change_j, audit_before.energy_change_j);
+    tell_true_energy(record.audit.energy_seen_j, audit_before.energy_seen_j);
+    if (pace < kLeastPace) to_be_changed();
     return report;
 }
 
@@ -193,7 +212,8 @@ template <typename Scalar>
 BodyView<Scalar> World<Scalar>::body(BodyId id) const {
     assert(contains(id));
     const Bodies<Scalar>& all = impl_->current();
-    return {id, all.position_m[id.index], all.velocity_mps[id.index], all.radius_m[id.index],
+    return {id, all.position_m[id.index],
+            all.velocity_mps[id.index] * static_cast<Scalar>(impl_->pace), all.radius_m[id.index],
             all.mass_kg[id.index]};
 }
 
@@ -260,17 +280,20 @@ const CollisionAudit& World<Scalar>::audit() const {
 
 template <typename Scalar>
 std::uint64_t World<Scalar>::state_hash() const {
-    return physics::state_hash(impl_->current());
+    if (impl_->pace == 1.0) return physics::state_hash(impl_->current());
+    Bodies<Scalar> slowed = impl_->current();
+    impl_->slow_down(slowed);
+    return physics::state_hash(slowed);
 }
 
 template <typename Scalar>
 double World<Scalar>::kinetic_energy_j() const {
-    return physics::kinetic_energy_j(impl_->current());
+    return physics::kinetic_energy_j(impl_->current()) * impl_->pace * impl_->pace;
 }
 
 template <typename Scalar>
 Vec2d World<Scalar>::momentum_ns() const {
-    return physics::momentum_ns(impl_->current());
+    return physics::momentum_ns(impl_->current()) * impl_->pace;
 }
 
 template <typename Scalar>
