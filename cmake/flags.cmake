@@ -26,7 +26,8 @@ target_compile_options(
 # gcc 12 sees overflows inside std::string that are not there (GCC bugs 105329, 105651); real ones are the
 # address sanitizer's to find.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(fts_flags INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+    target_compile_options(fts_flags INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+                                               -Wno-stringop-overread)
 endif()
 
 # SDL's own flags define it; where it is the same for all, all can share precompiled headers.

@@ -1,6 +1,6 @@
 # Reading Eigen, GoogleTest and the standard library is most of what compiling a source takes. With
-# FTS_PRECOMPILE it is done once, for rooms and for tests. clang-tidy reads every source without it, so that
-# one of the programs' that forgets an include is still found out.
+# FTS_PRECOMPILE it is done once, for rooms and for tests. The release preset and what clang-tidy reads go without,
+# so that a source of the programs that forgets an include is still found out.
 option(FTS_PRECOMPILE "Read the common third-party headers once for all sources" OFF)
 if(NOT FTS_PRECOMPILE)
     return()
