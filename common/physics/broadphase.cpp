@@ -3,23 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/physics/crowd_range.h"
+
 namespace fts::physics {
-namespace {
-
-// Outliers beyond these do not stretch the grid; a uniform crowd lies wholly within the widened
-// range.
-constexpr double kLowQuantile = 0.05;
-constexpr double kHighQuantile = 0.95;
-constexpr double kWiden = 0.1;
-
-template <typename Scalar>
-Scalar quantile(std::vector<Scalar>& values, double q) {
-    const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
-
-}  // namespace
 
 template <typename Scalar>
 std::uint32_t Broadphase<Scalar>::Axis::cell_of(Scalar x_m) const {
@@ -51,11 +37,9 @@ void Broadphase<Scalar>::begin(std::span<const Box<Scalar>> boxes, std::uint32_t
         for (const auto& box : boxes) {
             scratch_.push_back(Scalar(0.5) * (box.*kMin[axis] + box.*kMax[axis]));
         }
-        low[axis] = quantile(scratch_, kLowQuantile);
-        high[axis] = quantile(scratch_, kHighQuantile);
-        const Scalar margin = static_cast<Scalar>(kWiden) * (high[axis] - low[axis]);
-        low[axis] -= margin;
-        high[axis] += margin;
+        const CrowdRange<Scalar> range = crowd_range(scratch_);
+        low[axis] = range.low - range.margin;
+        high[axis] = range.high + range.margin;
         scratch_.clear();
         for (const auto& box : boxes) scratch_.push_back(box.*kMax[axis] - box.*kMin[axis]);
         cell = std::max(cell, Scalar(2) * quantile(scratch_, 0.5));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/physics/crowd_range.h"
 #include "common/physics/near_lanes.h"
 
 namespace fts::physics {
@@ -15,19 +16,8 @@ constexpr std::uint32_t kFewestCells = 16;
 // By how much cells are wider than the largest disc, so that the round-off of a cell's number never
 // parts what touches: that grows with the number of cells.
 constexpr double kMargin = 8.0;
-// Outliers beyond these do not stretch the grid; a uniform crowd lies wholly within the widened
-// range.
+// How many discs tell where most of them are.
 constexpr std::size_t kSample = 256;
-constexpr double kLowQuantile = 0.05;
-constexpr double kHighQuantile = 0.95;
-constexpr double kWiden = 0.1;
-
-template <typename Scalar>
-Scalar quantile(std::vector<Scalar>& values, double q) {
-    const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
 
 }  // namespace
 
@@ -44,11 +34,9 @@ void CellGrid<Scalar>::fit_axis(Axis& axis, std::span<const Scalar> x_m) {
     const std::size_t step = std::max<std::size_t>(1, x_m.size() / kSample);
     for (std::size_t i = 0; i < x_m.size(); i += step) sample_.push_back(x_m[i]);
     if (sample_.empty()) sample_.push_back(Scalar(0));
-    const Scalar low = quantile(sample_, kLowQuantile);
-    const Scalar high = quantile(sample_, kHighQuantile);
-    const Scalar margin = static_cast<Scalar>(kWiden) * (high - low);
-    axis.origin_m = low - margin;
-    axis.extent_m = (high - low) + Scalar(2) * margin;
+    const CrowdRange<Scalar> range = crowd_range(sample_);
+    axis.origin_m = range.low - range.margin;
+    axis.extent_m = (range.high - range.low) + Scalar(2) * range.margin;
 }
 
 template <typename Scalar>

@@ -3,26 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/physics/crowd_range.h"
+
 namespace fts::physics {
 namespace {
-
-// Outliers beyond these do not stretch the grid; a uniform crowd lies wholly within the widened
-// range.
-constexpr double kLowQuantile = 0.05;
-constexpr double kHighQuantile = 0.95;
-constexpr double kWiden = 0.1;
 
 // Another grid is worth its making when the crowd's extent has changed by this factor, or it has
 // moved by this part of its extent.
 constexpr double kSpread = 1.5;
 constexpr double kMoved = 0.25;
-
-template <typename Scalar>
-Scalar quantile(std::vector<Scalar>& values, double q) {
-    const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
 
 }  // namespace
 
@@ -32,10 +21,8 @@ auto EventCells<Scalar>::range_of(std::uint32_t axis, std::span<const Vec2<Scala
     if (positions_m.empty()) return {};
     scratch_.clear();
     for (const Vec2<Scalar>& position : positions_m) scratch_.push_back(position[axis]);
-    const Scalar low = quantile(scratch_, kLowQuantile);
-    const Scalar high = quantile(scratch_, kHighQuantile);
-    const Scalar margin = static_cast<Scalar>(kWiden) * (high - low);
-    return {low - margin, high + margin};
+    const CrowdRange<Scalar> range = crowd_range(scratch_);
+    return {range.low - range.margin, range.high + range.margin};
 }
 
 template <typename Scalar>

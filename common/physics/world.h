@@ -7,8 +7,8 @@
 //
 // A scene whose only acceleration is its own drag needs no kick: with one drag k for all, bodies
 // move on the same lines as without it, in the slower time s = (1 - exp(-k t)) / k. Such a tick is
-// drift(s), and every velocity times exp(-k h): exact, collisions included. The solver does not hear
-// of it, so that a calendar of collisions outlives it.
+// drift(s), and every velocity times exp(-k h): exact, collisions included. The solver does not
+// hear of it, so that a calendar of collisions outlives it.
 //
 // Deterministic: the same scene, calls and spans give the same bits on every compiler and
 // optimisation level. Not thread-safe: one thread at a time. No allocation after warm-up.

@@ -38,7 +38,7 @@ struct Touch {
 
 struct Meeting {
     Touch touch;
-    Quad at;  // in the slice
+    Quad at = Quad(0);  // in the slice
 };
 
 struct Constraint {
