@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
+#include <string>
+
+#include "client/bot/json_reader.h"
 
 namespace fts::bot {
 namespace {
-
-std::string in_words(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
 
 std::string whose(const Expectation& expectation) {
     return expectation.bot ? " of bot " + std::to_string(*expectation.bot) : "";

@@ -10,13 +10,13 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxQuotedBytes = 60;
 
+}  // namespace
+
 std::string in_words(double value) {
     std::ostringstream out;
     out << value;
     return out.str();
 }
-
-}  // namespace
 
 std::string quoted(const json& value) {
     std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);

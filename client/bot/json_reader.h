@@ -51,6 +51,9 @@ class JsonReader {
     std::set<std::string> asked_;
 };
 
+// To six digits.
+std::string in_words(double value);
+
 // A value as it stands in the file, cut short.
 std::string quoted(const nlohmann::json& value);
 

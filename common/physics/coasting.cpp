@@ -14,7 +14,7 @@ namespace {
 
 // Cells are wider than the largest disc by this part of it, and by so many units of the round-off
 // of coordinates, so that a body a little outside its cell is still next to all it touches.
-constexpr double kCellSlack = 1.0 / 64.0;
+constexpr double kCellRoom = 1.0 / 64.0;
 constexpr double kCellRoundOff = 64.0;
 // By how many units of round-off a pair may seem to miss, or to meet too late, and still be
 // computed exactly.
@@ -23,7 +23,7 @@ constexpr double kFilterSlack = 16.0;
 // reach and speed: far above round-off.
 constexpr double kApartSlack = 1e-2;
 // So many bodies tell whether the cells still suit all of them.
-constexpr std::size_t kSample = 256;
+constexpr std::size_t kCellSample = 256;
 
 }  // namespace
 
@@ -81,7 +81,7 @@ void Coasting<Scalar>::fit_cells() {
         coordinate = std::max(coordinate, sample_m_.back().cwiseAbs().maxCoeff());
     }
     const Scalar round_off = std::numeric_limits<Scalar>::epsilon() * coordinate;
-    const Scalar width = Scalar(2) * radius * static_cast<Scalar>(1.0 + kCellSlack) +
+    const Scalar width = Scalar(2) * radius * static_cast<Scalar>(1.0 + kCellRoom) +
                          static_cast<Scalar>(kCellRoundOff) * round_off;
     cells_.fit(sample_m_, width, model_.periodic ? model_.periodic : model_.walls,
                model_.periodic.has_value());
@@ -249,7 +249,7 @@ void Coasting<Scalar>::rebase() {
     end_s_ -= shift_s;
     if (model_.periodic) return;
     sample_m_.clear();
-    const std::size_t stride = living_.size() / kSample + 1;
+    const std::size_t stride = living_.size() / kCellSample + 1;
     for (std::size_t i = 0; i < living_.size(); i += stride) {
         sample_m_.push_back(position_m(living_[i]));
     }

@@ -59,7 +59,7 @@ struct Candidate {
     double cost_ns = 0.0;
 };
 
-std::string text_of(double value) {
+std::string rounded(double value) {
     char buffer[32];
     const auto end =
         std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 2).ptr;
@@ -261,16 +261,16 @@ std::string why_this_kind(const Candidate& choice, const Fidelity& fidelity) {
 
 std::string reason_for(const Candidate& choice, const std::vector<Candidate>& all,
                        const Scale& scale, const Fidelity& fidelity) {
-    std::string reason = "Bodies move about " + text_of(scale.step_in_radii) +
+    std::string reason = "Bodies move about " + rounded(scale.step_in_radii) +
                          " radii a tick: " + why_this_kind(choice, fidelity) +
-                         ", which bounds the collision error by " + text_of(choice.error);
+                         ", which bounds the collision error by " + rounded(choice.error);
     if (choice.error > fidelity.tolerance) {
         return reason + (fidelity.tolerance > 0.0
                              ? ", the least there is, but above the tolerance of " +
-                                   text_of(fidelity.tolerance) + "."
+                                   rounded(fidelity.tolerance) + "."
                              : ", the least there is.");
     }
-    reason += " (tolerance " + text_of(fidelity.tolerance) + ")";
+    reason += " (tolerance " + rounded(fidelity.tolerance) + ")";
     const auto runner_up =
         std::min_element(all.begin(), all.end(), [&](const Candidate& a, const Candidate& b) {
             const auto rank = [&](const Candidate& c) {
@@ -284,7 +284,7 @@ std::string reason_for(const Candidate& choice, const std::vector<Candidate>& al
         const double ratio = runner_up->cost_ns / choice.cost_ns;
         const std::string name(to_string(runner_up->solver.kind));
         reason += ratio < 1.2 ? "; " + name + " would take about as long"
-                              : "; " + name + " would take " + text_of(ratio) + " times as long";
+                              : "; " + name + " would take " + rounded(ratio) + " times as long";
     }
     return reason + ".";
 }

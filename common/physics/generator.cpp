@@ -1,7 +1,6 @@
 #include "common/physics/generator.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "common/physics/disc_lattice.h"
+#include "common/physics/number_text.h"
 #include "common/physics/packing.h"
 #include "common/physics/splitmix.h"
 
@@ -20,17 +20,13 @@ using Verdict = std::optional<SceneError>;
 // Sums of so many even numbers are nearly normal.
 constexpr int kEvenNumbersPerComponent = 12;
 
-std::string text_of(double value) {
-    char buffer[32];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 // Four digits behind the point, never above the value.
 std::string at_most(double value) {
     return text_of(std::floor(value * 1e4) / 1e4);
 }
 
-SceneError refuse(const std::string& name, const std::string& value, const std::string& remedy) {
+SceneError refuse_setting(const std::string& name, const std::string& value,
+                          const std::string& remedy) {
     const std::string field = "generator." + name;
     return {field, field + " is " + value + "; " + remedy};
 }
@@ -53,42 +49,43 @@ bool makes_boundary(const Scene& scene) {
 Verdict check_radii(const Generator& generator) {
     const auto check = [](const std::string& name, double value) -> Verdict {
         if (value >= kMinRadiusM && value <= kMaxRadiusM) return std::nullopt;
-        return refuse(
+        return refuse_setting(
             name, text_of(value),
             "give a radius from " + text_of(kMinRadiusM) + " to " + text_of(kMaxRadiusM) + " m");
     };
     if (auto error = check("radius_min", generator.radius_min_m)) return error;
     if (auto error = check("radius_max", generator.radius_max_m)) return error;
     if (generator.radius_min_m <= generator.radius_max_m) return std::nullopt;
-    return refuse("radius_max", text_of(generator.radius_max_m),
-                  "give at least radius_min, which is " + text_of(generator.radius_min_m));
+    return refuse_setting("radius_max", text_of(generator.radius_max_m),
+                          "give at least radius_min, which is " + text_of(generator.radius_min_m));
 }
 
 Verdict check_numbers(const Generator& generator, const Scene& scene) {
     const std::size_t room = kMaxBodies - std::min(kMaxBodies, scene.bodies.size());
     if (generator.count &&
         (*generator.count < 1 || *generator.count > static_cast<std::int64_t>(room))) {
-        return refuse("count", std::to_string(*generator.count),
-                      "give a number from 1 to " + std::to_string(room));
+        return refuse_setting("count", std::to_string(*generator.count),
+                              "give a number from 1 to " + std::to_string(room));
     }
     const auto& fraction = generator.packing_fraction;
     if (fraction && !(*fraction > 0.0 && *fraction <= kDensestPacking)) {
-        return refuse("packing_fraction", text_of(*fraction),
-                      "give a number above 0 and at most " + at_most(kDensestPacking) +
-                          ", to which equal discs fill the plane at best");
+        return refuse_setting("packing_fraction", text_of(*fraction),
+                              "give a number above 0 and at most " + at_most(kDensestPacking) +
+                                  ", to which equal discs fill the plane at best");
     }
     if (auto error = check_radii(generator)) return error;
     if (!(generator.speed_rms_mps >= 0.0 && generator.speed_rms_mps <= 1e-3 * kMaxSpeedMps)) {
-        return refuse("speed_rms", text_of(generator.speed_rms_mps),
-                      "give a speed from 0 to " + text_of(1e-3 * kMaxSpeedMps) + " m/s");
+        return refuse_setting("speed_rms", text_of(generator.speed_rms_mps),
+                              "give a speed from 0 to " + text_of(1e-3 * kMaxSpeedMps) + " m/s");
     }
     const bool needs_both = makes_boundary(scene);
     if (!generator.count && (needs_both || !fraction)) {
-        return refuse("count", "missing", "say how many balls to make");
+        return refuse_setting("count", "missing", "say how many balls to make");
     }
     if (needs_both && !fraction) {
-        return refuse("packing_fraction", "missing",
-                      "say how densely to pack, or give walls, periodic or platform sides to fill");
+        return refuse_setting(
+            "packing_fraction", "missing",
+            "say how densely to pack, or give walls, periodic or platform sides to fill");
     }
     return std::nullopt;
 }
@@ -141,15 +138,15 @@ Verdict check_width(const Scene& scene, const Generator& generator, bool made) {
     if (width_m >= radii_needed * generator.radius_max_m) return std::nullopt;
     if (made) {
         const double narrower = width_m / (radii_needed * generator.radius_max_m);
-        return refuse("packing_fraction", text_of(*generator.packing_fraction),
-                      "so few balls would fill a box of less than " + text_of(radii_needed) +
-                          " radii; give at most " +
-                          at_most(*generator.packing_fraction * narrower * narrower) +
-                          ", or more balls");
+        return refuse_setting("packing_fraction", text_of(*generator.packing_fraction),
+                              "so few balls would fill a box of less than " +
+                                  text_of(radii_needed) + " radii; give at most " +
+                                  at_most(*generator.packing_fraction * narrower * narrower) +
+                                  ", or more balls");
     }
-    return refuse("radius_max", text_of(generator.radius_max_m),
-                  "the sides are only " + text_of(width_m) + " m apart; give at most " +
-                      text_of(width_m / radii_needed) + " m");
+    return refuse_setting("radius_max", text_of(generator.radius_max_m),
+                          "the sides are only " + text_of(width_m) + " m apart; give at most " +
+                              text_of(width_m / radii_needed) + " m");
 }
 
 SceneError too_dense(const Generator& generator, const Region& region, std::size_t count,
@@ -159,31 +156,33 @@ SceneError too_dense(const Generator& generator, const Region& region, std::size
     if (generator.radius_min_m < generator.radius_max_m) {
         const std::string remedy =
             "no room was found for " + number + " balls of such radii; give less";
-        return generator.packing_fraction ? refuse("packing_fraction", text_of(fraction), remedy)
-                                          : refuse("count", number, remedy);
+        return generator.packing_fraction
+                   ? refuse_setting("packing_fraction", text_of(fraction), remedy)
+                   : refuse_setting("count", number, remedy);
     }
     const double radius_m = generator.radius_max_m;
     if (made) {
         const double ratio = lattice_radius_m(region, count) / radius_m;
-        return refuse("packing_fraction", text_of(fraction),
-                      number + " equal balls fill a square to " +
-                          at_most(std::min(1.0, ratio * ratio) * fraction) +
-                          " as this generator packs them; give at most that, or another count");
+        return refuse_setting(
+            "packing_fraction", text_of(fraction),
+            number + " equal balls fill a square to " +
+                at_most(std::min(1.0, ratio * ratio) * fraction) +
+                " as this generator packs them; give at most that, or another count");
     }
     const std::size_t capacity = lattice_capacity(region, radius_m);
     const std::string most = "give at most " + std::to_string(capacity) + ", or smaller radii";
     const bool count_decides =
         generator.count && count == static_cast<std::size_t>(*generator.count);
     if (count_decides) {
-        return refuse("count", number, "they find no room beside each other; " + most);
+        return refuse_setting("count", number, "they find no room beside each other; " + most);
     }
     const double reachable =
         static_cast<double>(capacity) * disc_area_m2(radius_m) / region.area_m2();
-    return refuse("packing_fraction", text_of(fraction),
-                  "the " + number +
-                      " balls that it takes find no room beside each other; give at "
-                      "most " +
-                      at_most(reachable) + ", or smaller radii");
+    return refuse_setting("packing_fraction", text_of(fraction),
+                          "the " + number +
+                              " balls that it takes find no room beside each other; give at "
+                              "most " +
+                              at_most(reachable) + ", or smaller radii");
 }
 
 double nearly_normal(SplitMix& random) {
@@ -221,13 +220,13 @@ void set_velocities(std::vector<BodyDef>& balls, double speed_rms_mps, SplitMix&
 
 Verdict check_drawn(const Generator& generator, std::size_t drawn) {
     if (drawn > kMaxBodies) {
-        return refuse("packing_fraction", text_of(*generator.packing_fraction),
-                      "that takes more than " + std::to_string(kMaxBodies) +
-                          " balls; give larger radii, less packing, or a count");
+        return refuse_setting("packing_fraction", text_of(*generator.packing_fraction),
+                              "that takes more than " + std::to_string(kMaxBodies) +
+                                  " balls; give larger radii, less packing, or a count");
     }
     if (drawn > 0) return std::nullopt;
-    return refuse("packing_fraction", text_of(*generator.packing_fraction),
-                  "that is less than one more ball covers; give more, or smaller radii");
+    return refuse_setting("packing_fraction", text_of(*generator.packing_fraction),
+                          "that is less than one more ball covers; give more, or smaller radii");
 }
 
 }  // namespace

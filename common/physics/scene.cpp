@@ -1,25 +1,15 @@
 #include "common/physics/scene.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include "common/physics/number_text.h"
 
 namespace fts::physics {
 namespace {
 
 using Verdict = std::optional<SceneError>;
-
-std::string text_of(double value) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    return std::string(buffer, end);
-}
-
-std::string text_of(const Vec2d& value) {
-    return std::string("(").append(text_of(value.x())).append(", ").append(text_of(value.y())) +
-           ")";
-}
 
 SceneError refuse(const std::string& field, const std::string& value, const std::string& remedy) {
     return {field, field + " is " + value + "; " + remedy};

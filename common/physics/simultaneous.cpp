@@ -172,11 +172,11 @@ Scalar ContactSet<Scalar>::approach_mps(const Touch& touch) const {
 
 template <typename Scalar>
 bool ContactSet<Scalar>::approaches(const Touch& touch) const {
-    constexpr Scalar kRoundOff =
+    constexpr Scalar kNoise =
         static_cast<Scalar>(kApproachRoundOff) * std::numeric_limits<Scalar>::epsilon();
     const Scalar scale = members_[touch.a].speed_scale_mps +
                          (touch.b == kNone ? Scalar(0) : members_[touch.b].speed_scale_mps);
-    return approach_mps(touch) < -kRoundOff * scale;
+    return approach_mps(touch) < -kNoise * scale;
 }
 
 template <typename Scalar>

@@ -17,10 +17,6 @@
 namespace fts::physics {
 namespace {
 
-// In units of the round-off of a time of impact.
-constexpr double kClockSlack = 8.0;
-// A part of the span: what was hit less long ago is hit elastically.
-constexpr double kElasticWithin = 1e-3;
 // Touching is never more than this part of the reach, however coarse the coordinates.
 constexpr double kTouchWithin = 0.01;
 

@@ -47,6 +47,11 @@ inline constexpr std::uint32_t kEventBudgetPerBody = 64;
 inline constexpr std::uint32_t kSetHitsPerEvent = 8;
 inline constexpr std::uint32_t kMaxStretches = 1U << 18;
 
+// By how many units of the round-off of a time of impact a clock may be wrong.
+inline constexpr double kClockSlack = 8.0;
+// A part of the span.
+inline constexpr double kElasticWithin = 1e-3;
+
 std::uint32_t event_budget(std::size_t bodies);
 
 template <typename Scalar>

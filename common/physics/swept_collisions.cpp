@@ -5,16 +5,10 @@
 #include "common/physics/diagnostics.h"
 #include "common/physics/hit_record.h"
 #include "common/physics/impact.h"
+#include "common/physics/solver_swept.h"
 #include "common/physics/swept_engine.h"
 
 namespace fts::physics {
-namespace {
-
-// In units of the span's round-off.
-constexpr double kClockSlack = 8.0;
-
-}  // namespace
-
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::process(const Happening& event) {
     switch (event.kind) {

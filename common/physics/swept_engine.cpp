@@ -10,8 +10,6 @@ namespace {
 
 // By how many units of round-off a swept box is larger than what it must hold.
 constexpr double kBoxSlack = 8.0;
-// A part of the span: what was hit less long ago is hit elastically.
-constexpr double kElasticWithin = 1e-3;
 
 }  // namespace
 

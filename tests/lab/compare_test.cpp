@@ -20,7 +20,7 @@ using physics::Vec2d;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr std::uint64_t kSeed = 11;
+constexpr std::uint64_t kGasSeed = 11;
 
 bool always() {
     return true;
@@ -33,7 +33,7 @@ Setting setting(SolverKind kind, std::uint32_t substeps = 1,
 
 // Balls of about one radius a tick at `speed` 1.
 Scene gas(double speed, std::size_t balls = 24) {
-    physics::Dice dice(kSeed);
+    physics::Dice dice(kGasSeed);
     return physics::random_gas({.balls = balls,
                                 .half_width_m = 4.0,
                                 .max_speed_mps = 30.0 * speed,

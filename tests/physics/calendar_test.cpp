@@ -7,11 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/physics/dice.h"
+#include "tests/physics/values.h"
 
 namespace fts::physics {
 namespace {
-
-constexpr double kNeverS = std::numeric_limits<double>::infinity();
 
 TEST(Calendar, equal_times_come_in_the_order_of_bodies) {
     Calendar calendar;
@@ -23,7 +22,7 @@ TEST(Calendar, equal_times_come_in_the_order_of_bodies) {
         calendar.remove(body);
     }
     EXPECT_TRUE(calendar.empty());
-    EXPECT_EQ(calendar.top().time_s, kNeverS);
+    EXPECT_EQ(calendar.top().time_s, kInfinite);
 }
 
 // Against a plain table that is searched through.
@@ -34,12 +33,12 @@ TEST(Calendar, has_the_earliest_on_top_whatever_is_set_removed_and_rebased) {
     for (const std::uint32_t slots : {1U, 2U, 5U, 6U, 37U, 200U}) {
         Calendar calendar;
         calendar.reset(slots);
-        std::vector<double> table(slots, kNeverS);
+        std::vector<double> table(slots, kInfinite);
         for (int turn = 0; turn < 5000; ++turn) {
             const auto body = static_cast<std::uint32_t>(dice.below(slots));
             const std::uint64_t what = dice.below(10);
             if (what == 0) {
-                table[body] = kNeverS;
+                table[body] = kInfinite;
                 calendar.remove(body);
             } else if (what == 1 && turn % 50 == 0) {
                 for (double& time_s : table) time_s -= 0.25;
@@ -50,7 +49,7 @@ TEST(Calendar, has_the_earliest_on_top_whatever_is_set_removed_and_rebased) {
             }
             const auto first = std::min_element(table.begin(), table.end());
             ASSERT_EQ(calendar.top().time_s, *first);
-            ASSERT_EQ(calendar.empty(), *first == kNeverS);
+            ASSERT_EQ(calendar.empty(), *first == kInfinite);
             if (calendar.empty()) continue;
             ASSERT_EQ(calendar.top().body, first - table.begin());
         }

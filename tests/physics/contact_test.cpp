@@ -12,9 +12,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 struct Load {
     std::uint64_t events = 0;
     std::uint32_t most_in_a_tick = 0;

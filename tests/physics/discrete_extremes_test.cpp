@@ -12,7 +12,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTickS = 1.0 / 60.0;
 constexpr SolverChoice kDiscrete = {SolverKind::kDiscrete, 1};
 
@@ -55,9 +54,9 @@ TYPED_TEST(DiscreteExtremes, parts_coincident_centres_the_same_way_every_time) {
 TYPED_TEST(DiscreteExtremes, leaves_infinite_masses_where_they_go) {
     Scene scene;
     scene.walls = Walls{{-5.0, -5.0}, {5.0, 5.0}};
-    scene.bodies = {{{4.4, 0.0}, {1.0, 0.0}, 0.5, kInfinity},
-                    {{4.2, 0.0}, {2.0, 0.0}, 0.5, kInfinity},
-                    {{0.0, 0.0}, {0.0, 0.0}, 1.0, kInfinity},
+    scene.bodies = {{{4.4, 0.0}, {1.0, 0.0}, 0.5, kInfinite},
+                    {{4.2, 0.0}, {2.0, 0.0}, 0.5, kInfinite},
+                    {{0.0, 0.0}, {0.0, 0.0}, 1.0, kInfinite},
                     {{0.0, 1.9}, {0.0, -3.0}, 1.0, 1.0}};
     World<TypeParam> world(scene, kDiscrete);
     world.step(TypeParam(0));
@@ -172,8 +171,8 @@ TEST(DeepestOverlap, is_that_of_the_worst_pair_or_wall_in_units_of_the_smaller_r
     EXPECT_EQ(deepest_overlap(bodies, model), 0.0) << "touching";
     bodies.position_m[1].x() = 2.5;
     EXPECT_NEAR(deepest_overlap(bodies, model), 0.5, 1e-15);
-    bodies.add({9.8, 9.5}, {0.0, 0.0}, 0.5, kInfinity);
-    bodies.add({9.9, 9.5}, {0.0, 0.0}, 0.5, kInfinity);
+    bodies.add({9.8, 9.5}, {0.0, 0.0}, 0.5, kInfinite);
+    bodies.add({9.9, 9.5}, {0.0, 0.0}, 0.5, kInfinite);
     EXPECT_NEAR(deepest_overlap(bodies, model), 0.5, 1e-15) << "these pass";
     bodies.add({-9.6, 5.0}, {0.0, 0.0}, 1.0, 1.0);
     EXPECT_NEAR(deepest_overlap(bodies, model), 0.6, 1e-14);

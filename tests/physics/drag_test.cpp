@@ -12,12 +12,7 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
 constexpr double kDragPerS = 0.7;
-
-std::string name_of(const testing::TestParamInfo<SolverKind>& info) {
-    return std::string(to_string(info.param));
-}
 
 class Drag : public testing::TestWithParam<SolverKind> {
   protected:

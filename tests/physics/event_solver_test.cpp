@@ -17,7 +17,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
 constexpr SolverChoice kEvent{.kind = SolverKind::kEvent};
 
 struct Collision {

@@ -16,11 +16,7 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 0.2;  // 0.4 radii at the speed of the start
-
-std::string name_of(const testing::TestParamInfo<SolverKind>& info) {
-    return std::string(to_string(info.param));
-}
+constexpr double kLongTick = 0.2;  // 0.4 radii at the speed of the start
 
 class GasOfDiscs : public testing::TestWithParam<SolverKind> {};
 INSTANTIATE_TEST_SUITE_P(Exact, GasOfDiscs, testing::Values(SolverKind::kSwept, SolverKind::kEvent),
@@ -52,7 +48,7 @@ Scene hexagonal_gas(int columns, int rows, double packing, std::uint64_t seed) {
 
 void run_until(World<double>& world, std::uint64_t ball_collisions) {
     while (world.audit().ball_collisions < ball_collisions) {
-        ASSERT_FALSE(world.step(kTick).overrun);
+        ASSERT_FALSE(world.step(kLongTick).overrun);
     }
 }
 
@@ -84,9 +80,9 @@ TEST_P(GasOfDiscs, time_reversal_after_a_thousand_collisions_returns_to_the_star
     const Scene scene = hexagonal_gas(20, 20, 0.5, 43);
     World<double> world(scene, {GetParam()});
     int ticks = 0;
-    for (; world.audit().ball_collisions < 1000; ++ticks) world.step(kTick);
+    for (; world.audit().ball_collisions < 1000; ++ticks) world.step(kLongTick);
     reverse(world);
-    for (int tick = 0; tick < ticks; ++tick) world.step(kTick);
+    for (int tick = 0; tick < ticks; ++tick) world.step(kLongTick);
     const Vec2d extent = scene.periodic->max_m - scene.periodic->min_m;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const auto body = world.body(world.ids()[i]);
@@ -120,8 +116,8 @@ double measured_compressibility(World<double>& world, std::uint64_t collisions) 
     double virial_j_s = 0.0, time_s = 0.0;
     const std::uint64_t until = world.audit().ball_collisions + collisions;
     while (world.audit().ball_collisions < until) {
-        world.step(kTick);
-        time_s += kTick;
+        world.step(kLongTick);
+        time_s += kLongTick;
         for (const auto& contact : world.contacts()) virial_j_s += contact.impulse_ns * 1.0;
     }
     return 1.0 + virial_j_s / (2.0 * bodies * temperature_j * time_s);

@@ -14,14 +14,12 @@
 #include "common/physics/diagnostics.h"
 #include "common/physics/disc_grid.h"
 #include "common/physics/region.h"
+#include "tests/physics/values.h"
 
 namespace fts::physics {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Scene filled(const Scene& scene, const Generator& generator) {
     auto result = fill(scene, generator);
@@ -123,7 +121,8 @@ TEST(Generator, keeps_clear_of_the_bodies_that_the_scene_has_and_counts_their_ar
     for (const double packing : {0.3, 0.6}) {
         Scene scene;
         scene.walls = Walls{{-20.0, -20.0}, {20.0, 20.0}};
-        scene.bodies = {{{5.0, 5.0}, {0.0, 0.0}, 6.0, kInf}, {{-10.0, 0.0}, {1.0, 0.0}, 0.1, 1.0}};
+        scene.bodies = {{{5.0, 5.0}, {0.0, 0.0}, 6.0, kInfinite},
+                        {{-10.0, 0.0}, {1.0, 0.0}, 0.1, 1.0}};
         const Scene full = filled(scene, {.seed = 4, .packing_fraction = packing});
         EXPECT_EQ(full.bodies[0].radius_m, 6.0);
         EXPECT_NEAR(cover_of(full), packing, 0.01 * packing);
@@ -199,7 +198,7 @@ TEST(Generator, golden_hashes_of_every_way_to_place) {
 TEST(Generator, refuses_numbers_by_name_value_and_remedy) {
     const Generator good{.seed = 1, .count = 10, .packing_fraction = 0.3};
     const auto expect_refused = [&](const std::string& field, auto change) {
-        for (const double bad : {kNan, -1.0, kInf, -kInf}) {
+        for (const double bad : {kNan, -1.0, kInfinite, -kInfinite}) {
             Generator generator = good;
             change(generator, bad);
             const SceneError error = refused({}, generator);

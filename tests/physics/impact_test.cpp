@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/physics/dice.h"
+#include "tests/physics/values.h"
 
 namespace fts::physics {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(Impact, equal_masses_head_on_exchange_velocities) {
     const auto hit = impact<double>({{-1, 0}, {3, 0}, 2.0}, {{1, 0}, {-1, 0}, 2.0}, 1.0);

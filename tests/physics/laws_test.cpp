@@ -11,7 +11,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
 constexpr std::uint64_t kTenThousand = 10'000;
 
 TEST(Laws, a_walled_box_keeps_its_energy_over_ten_thousand_collisions) {

@@ -12,8 +12,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
-
 Scene empty_torus(double width_m, double height_m) {
     Scene scene;
     scene.periodic = Periodic{Vec2d::Zero(), Vec2d(width_m, height_m)};

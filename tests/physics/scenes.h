@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+
+#include <gtest/gtest.h>
 
 #include "common/physics/scene.h"
 #include "common/physics/world.h"
 #include "tests/physics/dice.h"
+#include "tests/physics/values.h"
 
 namespace fts::physics {
 
@@ -23,6 +27,11 @@ Scene random_gas(const Gas& gas, Dice& dice);
 // A gas inside a closed circle of heavy balls that touch: it cannot get out, and nothing outside
 // acts on it.
 Scene gas_in_a_ring_of_balls(std::size_t balls, Dice& dice);
+
+// A name for a case of a test that goes through the solvers.
+inline std::string name_of(const testing::TestParamInfo<SolverKind>& info) {
+    return std::string(to_string(info.param));
+}
 
 // Velocities backwards, so that time runs back.
 template <typename Scalar>

@@ -15,9 +15,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 // ---- Cradles in a world ----
 
 // Balls of radius 1/2 that touch, in a row from x = 0; then `strikers` that touch each other and

@@ -9,7 +9,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTick = 1.0 / 60.0;
 constexpr double kRadiusM = 0.5;
 
 // In radii a tick, both balls together.

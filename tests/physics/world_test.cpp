@@ -10,8 +10,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 BodyDef ball_at(double x, double y) {
     return {Vec2d(x, y), Vec2d::Zero(), 0.5, 1.0};
 }

@@ -11,9 +11,6 @@
 namespace fts::replication {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 TEST(Quantise, RoundsToTheNearestStepOnBothSidesOfZero) {
     EXPECT_EQ(quantise(1.0, kPositionStepM), 1024);
     EXPECT_EQ(quantise(0.49 * kPositionStepM, kPositionStepM), 0);
@@ -45,11 +42,13 @@ TEST(Quantise, ClampsWhatIsOutOfRangeAndInRangeSaysSo) {
     EXPECT_TRUE(in_range(edge_m, kPositionStepM));
     EXPECT_FALSE(in_range(edge_m + kPositionStepM, kPositionStepM));
     EXPECT_EQ(quantise(edge_m + 1, kPositionStepM), std::numeric_limits<std::int32_t>::max());
-    EXPECT_EQ(quantise(kInfinity, kPositionStepM), std::numeric_limits<std::int32_t>::max());
-    EXPECT_EQ(quantise(-kInfinity, kPositionStepM), std::numeric_limits<std::int32_t>::min());
-    EXPECT_FALSE(in_range(-kInfinity, kPositionStepM));
-    EXPECT_EQ(quantise(kNan, kPositionStepM), 0);
-    EXPECT_FALSE(in_range(kNan, kPositionStepM));
+    EXPECT_EQ(quantise(std::numeric_limits<double>::infinity(), kPositionStepM),
+              std::numeric_limits<std::int32_t>::max());
+    EXPECT_EQ(quantise(-std::numeric_limits<double>::infinity(), kPositionStepM),
+              std::numeric_limits<std::int32_t>::min());
+    EXPECT_FALSE(in_range(-std::numeric_limits<double>::infinity(), kPositionStepM));
+    EXPECT_EQ(quantise(std::numeric_limits<double>::quiet_NaN(), kPositionStepM), 0);
+    EXPECT_FALSE(in_range(std::numeric_limits<double>::quiet_NaN(), kPositionStepM));
 }
 
 Snapshot with_balls(std::initializer_list<std::uint16_t> ids) {

@@ -12,8 +12,8 @@ namespace {
 
 using physics::Vec2d;
 
-constexpr std::array kWants = {game::Stat::kMass, game::Stat::kThrust, game::Stat::kTopSpeed,
-                               game::Stat::kDash, game::Stat::kBraking};
+constexpr std::array kChaserWants = {game::Stat::kMass, game::Stat::kThrust, game::Stat::kTopSpeed,
+                                     game::Stat::kDash, game::Stat::kBraking};
 // A target is given up for another one only when that is this much easier.
 constexpr double kLoyalty = 0.7;
 // No plan looks further ahead.
@@ -127,7 +127,7 @@ game::InputCommand Chaser::decide(const client::View& view, Rng&) {
 }
 
 std::span<const game::Stat> Chaser::shopping_list() const {
-    return kWants;
+    return kChaserWants;
 }
 
 }  // namespace fts::bot

@@ -8,8 +8,8 @@
 namespace fts::bot {
 namespace {
 
-constexpr std::array kWants = {game::Stat::kMagnet, game::Stat::kTopSpeed, game::Stat::kThrust,
-                               game::Stat::kBraking};
+constexpr std::array kCollectorWants = {game::Stat::kMagnet, game::Stat::kTopSpeed,
+                                        game::Stat::kThrust, game::Stat::kBraking};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ game::InputCommand Collector::decide(const client::View& view, Rng& rng) {
 }
 
 std::span<const game::Stat> Collector::shopping_list() const {
-    return kWants;
+    return kCollectorWants;
 }
 
 }  // namespace fts::bot

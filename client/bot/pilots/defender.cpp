@@ -9,7 +9,8 @@ namespace {
 
 using physics::Vec2d;
 
-constexpr std::array kWants = {game::Stat::kMass, game::Stat::kBraking, game::Stat::kThrust};
+constexpr std::array kDefenderWants = {game::Stat::kMass, game::Stat::kBraking,
+                                       game::Stat::kThrust};
 // A ball that could touch within this time is met.
 constexpr double kAlarmS = 0.8;
 // Only as long as home is this near.
@@ -53,7 +54,7 @@ game::InputCommand Defender::decide(const client::View& view, Rng&) {
 }
 
 std::span<const game::Stat> Defender::shopping_list() const {
-    return kWants;
+    return kDefenderWants;
 }
 
 }  // namespace fts::bot

@@ -7,7 +7,8 @@
 namespace fts::bot {
 namespace {
 
-constexpr std::array kWants = {game::Stat::kTopSpeed, game::Stat::kBraking, game::Stat::kThrust};
+constexpr std::array kWandererWants = {game::Stat::kTopSpeed, game::Stat::kBraking,
+                                       game::Stat::kThrust};
 constexpr double kArrivedM = 1.0;
 constexpr double kPatienceS = 4.0;
 constexpr int kTries = 50;
@@ -37,7 +38,7 @@ game::InputCommand Wanderer::decide(const client::View& view, Rng& rng) {
 }
 
 std::span<const game::Stat> Wanderer::shopping_list() const {
-    return kWants;
+    return kWandererWants;
 }
 
 }  // namespace fts::bot
