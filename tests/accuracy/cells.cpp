@@ -270,6 +270,14 @@ StudyCells all_cells() {
                 cells.accuracy.push_back(accuracy_cell(scene, speed, setting));
             }
         }
+        for (const double ratio : mass_ratios()) {
+            const std::string scene = pairs_of_mass_name(ratio);
+            cells.accuracy.push_back(accuracy_cell(scene, kExtremesSpeed, setting));
+        }
+        for (const double radii : offsets_radii()) {
+            const std::string scene = pairs_off_name(radii);
+            cells.accuracy.push_back(accuracy_cell(scene, kExtremesSpeed, setting));
+        }
         for (const double parameter : impact_parameters()) {
             if (parameter != 0.5) {
                 cells.accuracy.push_back(accuracy_cell(pairs_name(parameter), 0.1, setting));

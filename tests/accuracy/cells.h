@@ -37,6 +37,7 @@ std::vector<lab::Setting> size_settings();
 const std::vector<std::size_t>& divergence_sizes();
 const std::vector<std::size_t>& cost_sizes();
 inline constexpr std::uint64_t kDivergenceSeeds = 5;
+inline constexpr double kExtremesSpeed = 0.1;
 
 std::string accuracy_key(const std::string& scene, double speed, const lab::Setting& setting);
 std::string cost_key(const std::string& scene, double speed, const lab::Setting& setting);

@@ -22,6 +22,7 @@ using physics::SolverKind;
 
 constexpr const char* kCommand = "scripts/accuracy-study";
 constexpr double kTradeSpeed = 0.1;
+constexpr int kFewestCollisions = 32;
 
 const char* kMediumGas = "100 equal balls in a periodic box, 30 % covered";
 
@@ -230,6 +231,45 @@ Figure error_over_impact_parameter(const CellStore& cells) {
     return {"accuracy-impact.svg", plot};
 }
 
+// E of pairs, over what is extreme about them. Where half of them do not even meet, for want of
+// digits, there is nothing to tell.
+Plot over_extreme(const CellStore& cells, const std::vector<double>& values,
+                  std::string (*name_of)(double)) {
+    Plot plot;
+    plot.y = {"collision error E", Scale::kLog, {}, {}};
+    plot.footnote = kCommand;
+    for (const Setting& setting : shown_settings()) {
+        Series series = empty_series(setting);
+        for (const double value : values) {
+            const Json cell = cells.find(accuracy_key(name_of(value), kExtremesSpeed, setting));
+            if (!cell.is_object() || cell["collisions"] < kFewestCollisions) continue;
+            add_point(series, value, cell, "E", lab::kLeastDrawnError);
+        }
+        plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+Figure error_over_mass_ratio(const CellStore& cells) {
+    Plot plot = over_extreme(cells, mass_ratios(), pairs_of_mass_name);
+    plot.title = "No mass is too small or too large";
+    plot.subtitle =
+        "64 pairs of balls at 0.1 radii a tick, the one at rest lighter or heavier than the "
+        "other. No error at all is drawn at 1e-17.";
+    plot.x = {"mass of the ball at rest over that of the other", Scale::kLog, {}, {}};
+    return {"accuracy-mass.svg", plot};
+}
+
+Figure error_over_offset(const CellStore& cells) {
+    Plot plot = over_extreme(cells, offsets_radii(), pairs_off_name);
+    plot.title = "Far from the origin, places have fewer digits";
+    plot.subtitle =
+        "64 pairs of equal balls at 0.1 radii a tick, the whole scene moved away from the origin.";
+    plot.x = {"distance along both axes, radii", Scale::kLog, {}, {}};
+    plot.bands = {{0.7, 1e3, "as wrong as ignoring every collision"}};
+    return {"accuracy-offset.svg", plot};
+}
+
 }  // namespace
 
 std::vector<Figure> figures_of(const CellStore& cells) {
@@ -241,7 +281,9 @@ std::vector<Figure> figures_of(const CellStore& cells) {
             drift(cells),
             divergence_over_size(cells),
             cost_over_speed(cells),
-            cost_over_size(cells)};
+            cost_over_size(cells),
+            error_over_mass_ratio(cells),
+            error_over_offset(cells)};
 }
 
 }  // namespace fts::accuracy

@@ -24,7 +24,8 @@ struct StudyScene {
 // "gas-dilute", "gas-medium", "gas-dense": 100 balls in a periodic box covering 5, 30 and 70 %.
 // "heavy-light": the medium gas, every other ball 100 times heavier. "rack": 15 touching balls and
 // the one that breaks them. "pairs-0.50": 64 pairs, the one ball at rest, the other passing its
-// centre at 0.50 of the sum of radii.
+// centre at 0.50 of the sum of radii. "pairs-of-mass-1e+06": the one at rest a million times
+// heavier; "pairs-off-1e+06": a million radii from the origin, along both axes.
 StudyScene study_scene(const std::string& name, double radii_per_tick);
 
 // A medium gas of any size.
@@ -33,5 +34,9 @@ StudyScene medium_gas(std::size_t balls, double radii_per_tick, std::uint64_t se
 const std::vector<std::string>& gas_names();
 const std::vector<double>& impact_parameters();
 std::string pairs_name(double impact_parameter);
+const std::vector<double>& mass_ratios();
+std::string pairs_of_mass_name(double ratio);
+const std::vector<double>& offsets_radii();
+std::string pairs_off_name(double radii);
 
 }  // namespace fts::accuracy
