@@ -1,0 +1,58 @@
+// The shared physics on quantised states: balls of a snapshot, run forward tick by tick. The same
+// balls, calls and course give the same bits at both ends.
+//
+// `snap` puts the running state onto the lattice. A server that snaps at every snapshot has nothing
+// that its clients do not have: who runs on from such a snapshot, and snaps as it does, stays with
+// it to the last bit until somebody steers.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/physics/world.h"
+#include "common/replication/snapshot.h"
+
+namespace fts::replication {
+
+struct Lattice {
+    double position_step_m = kPositionStepM;
+    double velocity_step_mps = kVelocityStepMps;
+};
+
+// What both ends know besides snapshots.
+struct Course {
+    physics::Scene scene;  // its own bodies are not looked at
+    Lattice lattice;
+    double tick_s = 1.0 / 60.0;
+    // What the control of a ball does to it.
+    std::function<physics::Control<double>(const BallState&)> control_of;
+};
+
+class LatticeWorld {
+  public:
+    // Whatever the balls hold, they are put inside the walls and made valid bodies.
+    LatticeWorld(const Course& course, std::span<const BallState> balls);
+
+    // The control in `controls` acts on ball `index` from now on.
+    void steer(std::size_t index, const BallState& controls);
+    // Straight on, with collisions; `span_s` after `span_s`.
+    void advance(double span_s);
+    void snap();
+
+    // As they are now, on the lattice.
+    std::vector<BallState> balls() const;
+    // Of the last `advance`; the index of a body is that of its ball.
+    std::span<const physics::Contact<double>> contacts() const { return world_.contacts(); }
+
+  private:
+    physics::Scene scene_of(std::span<const BallState> balls) const;
+    void steer_all();
+
+    Course course_;
+    std::vector<BallState> balls_;  // but for their motion
+    physics::World<double> world_;
+};
+
+}  // namespace fts::replication

@@ -1,0 +1,73 @@
+#include "common/replication/predictor.h"
+
+#include <cassert>
+
+#include "common/replication/doubt_tracker.h"
+
+namespace fts::replication {
+namespace {
+
+std::int32_t straight_on(std::int32_t place, std::int32_t speed, double span_s,
+                         const Lattice& lattice) {
+    return quantise(dequantise(place, lattice.position_step_m) +
+                        dequantise(speed, lattice.velocity_step_mps) * span_s,
+                    lattice.position_step_m);
+}
+
+std::vector<BallState> in_straight_lines(const Lattice& lattice,
+                                         std::span<const BallState> baseline, double span_s) {
+    std::vector<BallState> balls(baseline.begin(), baseline.end());
+    for (BallState& ball : balls) {
+        ball.x = straight_on(ball.x, ball.vx, span_s, lattice);
+        ball.y = straight_on(ball.y, ball.vy, span_s, lattice);
+    }
+    return balls;
+}
+
+std::vector<BallState> by_physics(const Course& course, Tick snap_every,
+                                  std::span<const BallState> baseline, Tick ticks,
+                                  DoubtTracker& doubts) {
+    LatticeWorld world(course, baseline);
+    if (!course.control_of) {
+        world.advance(course.tick_s * ticks);
+        doubts.follow(world.contacts(), 0.0);
+        return world.balls();
+    }
+    for (Tick tick = 0; tick < ticks; ++tick) {
+        if (snap_every > 0 && tick > 0 && tick % snap_every == 0) world.snap();
+        world.advance(course.tick_s);
+        doubts.follow(world.contacts(), course.tick_s * tick);
+    }
+    return world.balls();
+}
+
+}  // namespace
+
+Prediction predict(const Course& course, const Steering& steering, Foresight foresight,
+                   std::span<const BallState> baseline, Tick baseline_tick, Tick tick) {
+    assert(tick > baseline_tick);
+    const Tick ticks = tick - baseline_tick;
+    const double span_s = course.tick_s * ticks;
+    const bool on_lattice = foresight == Foresight::kControlsOnLattice;
+    DoubtTracker doubts(course.lattice, baseline, !on_lattice, steering.unforeseen_mps2);
+    std::vector<BallState> balls;
+    if (foresight == Foresight::kStraightLines) {
+        balls = in_straight_lines(course.lattice, baseline, span_s);
+    } else if (foresight == Foresight::kCollisions) {
+        Course nobody_steers = course;
+        nobody_steers.control_of = nullptr;
+        balls = by_physics(nobody_steers, 0, baseline, ticks, doubts);
+    } else {
+        balls =
+            by_physics(course, on_lattice ? steering.snapshot_ticks : 0, baseline, ticks, doubts);
+    }
+    Prediction prediction{baseline_tick, tick, std::vector<Expectation>(balls.size())};
+    doubts.judge(span_s, prediction.balls);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        prediction.balls[i].state = balls[i];
+        prediction.balls[i].state.dashed = false;
+    }
+    return prediction;
+}
+
+}  // namespace fts::replication
