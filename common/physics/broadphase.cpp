@@ -27,6 +27,19 @@ void Broadphase<Scalar>::fit_axis(Axis& axis, Scalar low_m, Scalar high_m, Scala
 }
 
 template <typename Scalar>
+void Broadphase<Scalar>::reserve(std::uint32_t slots) {
+    first_node_.reserve(kUsualCellsPerBody * (slots + 1));
+    nodes_.reserve(kUsualCellsPerBody * slots);
+    box_.reserve(slots);
+    cells_.reserve(slots);
+    place_.reserve(slots);
+    seen_in_query_.reserve(slots);
+    placed_.reserve(slots);
+    wide_.reserve(slots);
+    scratch_.reserve(slots);
+}
+
+template <typename Scalar>
 void Broadphase<Scalar>::begin(std::span<const Box<Scalar>> boxes, std::uint32_t slots) {
     Scalar low[2] = {}, high[2] = {};
     Scalar cell = Scalar(0);

@@ -28,6 +28,9 @@ struct Box {
 template <typename Scalar>
 class Broadphase {
   public:
+    // So many slots need no memory beyond this, unless bodies sweep many cells.
+    void reserve(std::uint32_t slots);
+
     // Forgets everything and fits the cells to what will be placed. `slots` is above every body's
     // index.
     void begin(std::span<const Box<Scalar>> boxes, std::uint32_t slots);
@@ -64,6 +67,7 @@ class Broadphase {
 
     static constexpr std::uint32_t kNoNode = 0xffffffff;
     static constexpr std::uint64_t kMaxCellsPerBody = 64;
+    static constexpr std::size_t kUsualCellsPerBody = 4;
 
     void fit_axis(Axis& axis, Scalar low_m, Scalar high_m, Scalar cell_m, std::size_t bodies);
     Cells cells_of(const Box<Scalar>& box) const;

@@ -11,6 +11,7 @@
 #include "common/physics/event_queue.h"
 #include "common/physics/simultaneous.h"
 #include "common/physics/solver.h"
+#include "common/physics/swept_paths.h"
 #include "common/physics/swept_space.h"
 
 namespace fts::physics {
@@ -25,25 +26,41 @@ class SweptEngine {
     using Vec = Vec2<Scalar>;
     using Image = typename Space::Image;
     using Happening = Event<Scalar, Image>;
+    using Path = typename SweptPaths<Scalar>::Motion;
+    using Touching = typename SweptPaths<Scalar>::Touching;
+    static constexpr Scalar kLongAgo = -std::numeric_limits<Scalar>::infinity();
     struct Partner {
         std::uint32_t body = kNoBody;
         [[no_unique_address]] Image image = {};
-        friend bool operator==(const Partner&, const Partner&) = default;
+        friend auto operator<=>(const Partner&, const Partner&) = default;
     };
 
     // When, and what it changes: swept_engine.cpp.
     void begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                Record<Scalar>& record);
+    void begin_knowledge();
     void begin_stretch();
     bool run_stretch();
     void end_stretch(Scalar time_s);
     Scalar stretch_end() const;
     void shorten_stretch(std::uint32_t body);
-    void place(std::uint32_t body, const Box<Scalar>& box);
+    void place(std::uint32_t body);
+    void fit_strays();
     void predict_everybody();
+    template <bool kEqualRadii>
+    void predict_pairs();
+    void predict_all_walls();
+    void predict_images();
+    void predict_strays();
     template <bool kAfterSet>
-    void predict(std::uint32_t body, const Box<Scalar>& box);
+    void predict(std::uint32_t body);
+    template <bool kAfterSet>
+    void predict_meetings(std::uint32_t body);
     void predict_pair(std::uint32_t a, std::uint32_t b, Image image);
+    Path path_of(std::uint32_t body) const {
+        return {position_at(body, now_s_), bodies_->velocity_mps[body], bodies_->radius_m[body],
+                now_s_ - from_s_};
+    }
     template <bool kAfterSet>
     void predict_walls(std::uint32_t body);
     void predict_fall(std::uint32_t body);
@@ -71,6 +88,10 @@ class SweptEngine {
     Disc disc_at(std::uint32_t body, const Vec& position_m) const;
     Box<Scalar> reach_of(const Disc& disc) const;
     bool touches(const Disc& disc, std::uint32_t other, const Vec& separation_m) const;
+    Touching touching(const Disc& disc, Image image) const;
+    Vec separation_from(const Disc& disc, std::uint32_t other, Image image) const {
+        return space_.moved(disc.position_m, image) - position_at(other, now_s_);
+    }
     bool is_touched_by_others(const Happening& event);
     bool is_pair_touched(const Happening& event);
     void collide_set(const Happening& event);
@@ -91,6 +112,10 @@ class SweptEngine {
         return {position.x() + velocity.x() * since_s, position.y() + velocity.y() * since_s};
     }
     void move_to(std::uint32_t body, Scalar time_s) {
+        if (is_touched_[body] == 0) {
+            is_touched_[body] = 1;
+            touched_.push_back(body);
+        }
         bodies_->position_m[body] = position_at(body, time_s);
         time_s_[body] = time_s;
     }
@@ -113,18 +138,25 @@ class SweptEngine {
     std::uint32_t budget_ = 0;
     std::uint32_t spent_ = 0;  // of the budget
     Scalar span_s_ = Scalar(0);
-    Scalar until_s_ = Scalar(0);  // the end of the present stretch, within the span
+    Scalar from_s_ = Scalar(0);  // the present stretch, within the span
+    Scalar until_s_ = Scalar(0);
     Scalar now_s_ = Scalar(0);
 
     std::vector<Scalar> time_s_;        // by body: when its position holds
     std::vector<std::uint32_t> count_;  // by body: events so far
     std::vector<Partner> partner_;      // by body: whom it hit last, if nothing happened since
     std::vector<Scalar> hit_s_;         // by body: the last collision
+    std::vector<std::uint8_t> is_touched_;
+    std::vector<std::uint32_t> touched_;  // of whom the above is not as it was at first
+    SweptPaths<Scalar> paths_;
+    std::vector<std::uint32_t> strays_;  // whom paths_ does not hold
+    std::size_t fitted_strays_ = 0;
+    Broadphase<Scalar> strays_near_;
     std::vector<Box<Scalar>> boxes_;
     EventQueue<Happening> queue_;
-    Broadphase<Scalar> broadphase_;
     ContactSet<Scalar> set_;
     std::vector<Happening> not_in_set_;
+    std::vector<Partner> near_;
 };
 
 }  // namespace fts::physics

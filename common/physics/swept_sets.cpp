@@ -55,20 +55,34 @@ bool SweptEngine<Scalar, Space>::touches(const Disc& disc, std::uint32_t other,
     return squared <= limit * limit && squared > Scalar(0);
 }
 
-// visit(other, separation) for all that touches `body` now; separation from `other`, or an image of
-// it, to `body`.
+template <typename Scalar, typename Space>
+auto SweptEngine<Scalar, Space>::touching(const Disc& disc, Image image) const -> Touching {
+    const Scalar reach = disc.radius_m + paths_.largest_radius_m();
+    return {space_.moved(disc.position_m, image), disc.radius_m,
+            touch_tolerance_m(reach, disc.extent_m)};
+}
+
+// visit(other, separation) for all that touches `body` now, lower ones first; separation from
+// `other`, or an image of it, to `body`.
 template <typename Scalar, typename Space>
 template <typename Visit>
 void SweptEngine<Scalar, Space>::for_each_touching(std::uint32_t body, Visit&& visit) {
     const Disc disc = disc_at(body, position_at(body, now_s_));
+    near_.clear();
     space_.for_each_image(reach_of(disc), [&](const Box<Scalar>& moved, Image image) {
-        broadphase_.for_each_near(body, moved, [&](std::uint32_t other) {
-            if (!bodies_->alive[other]) return;
-            const Vec separation =
-                space_.moved(disc.position_m, image) - position_at(other, now_s_);
-            if (touches(disc, other, separation)) visit(other, separation);
-        });
+        const auto note = [&](std::uint32_t other) {
+            if (other == body || !bodies_->alive[other]) return;
+            if (touches(disc, other, separation_from(disc, other, image))) {
+                near_.push_back({other, image});
+            }
+        };
+        paths_.for_each_touching(touching(disc, image), {}, now_s_ - from_s_, note);
+        if (!strays_.empty()) strays_near_.for_each_near(body, moved, note);
     });
+    std::sort(near_.begin(), near_.end());
+    for (const Partner& near : near_) {
+        visit(near.body, separation_from(disc, near.body, near.image));
+    }
 }
 
 template <typename Scalar, typename Space>
@@ -114,12 +128,15 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
                                        : united(reach_of(a), reach_of(b));
     bool found = false;
     space_.for_each_image(box, [&](const Box<Scalar>& moved, Image image) {
-        broadphase_.for_each_near(event.a, moved, [&](std::uint32_t other) {
-            if (found || other == event.b || !bodies_->alive[other]) return;
-            const Vec at = position_at(other, now_s_);
-            found = (a_moves && touches(a, other, space_.moved(a.position_m, image) - at)) ||
-                    (b_moves && touches(b, other, space_.moved(b.position_m, image) - at));
-        });
+        const auto look = [&](std::uint32_t other) {
+            if (found || other == event.a || other == event.b || !bodies_->alive[other]) return;
+            found = (a_moves && touches(a, other, separation_from(a, other, image))) ||
+                    (b_moves && touches(b, other, separation_from(b, other, image)));
+        };
+        const Touching near_a = a_moves ? touching(a, image) : Touching{};
+        const Touching near_b = b_moves ? touching(b, image) : Touching{};
+        paths_.for_each_touching(near_a, near_b, now_s_ - from_s_, look);
+        if (!strays_.empty()) strays_near_.for_each_near(event.a, moved, look);
     });
     return found;
 }

@@ -19,6 +19,7 @@ struct LatticeImage {
     std::int32_t x = 0;
     std::int32_t y = 0;
     LatticeImage operator-() const { return {-x, -y}; }
+    bool is_upper() const { return y > 0 || (y == 0 && x > 0); }
     friend auto operator<=>(const LatticeImage&, const LatticeImage&) = default;
 };
 
@@ -52,7 +53,11 @@ class TorusSpace {
         box_ = box;
         extent_m_ = box.extent_m();
     }
-    void uncover() { covered_ = {box_.min_m.x(), box_.min_m.y(), box_.max_m.x(), box_.max_m.y()}; }
+    // Only what is within `margin_m` of the box is covered.
+    void uncover(Scalar margin_m) {
+        covered_ = {box_.min_m.x() - margin_m, box_.min_m.y() - margin_m, box_.max_m.x() + margin_m,
+                    box_.max_m.y() + margin_m};
+    }
     // Every placed box is covered, and so are all before `uncover`.
     void cover(const Box<Scalar>& box) {
         covered_ = {

@@ -72,7 +72,10 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
      "server/main.cpp server/lab server/ops client/sdl/main.cpp client/bot/main.cpp", false},
     {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
-    {"the compiler's vector instructions", "emmintrin.h", "common/physics/near_lanes.h", false},
+    {"the compiler's vector instructions", "emmintrin.h immintrin.h",
+     "common/physics/near_lanes.h common/physics/swept_lanes.cpp "
+     "common/physics/swept_lanes_avx2.cpp common/physics/swept_lanes_avx512.cpp",
+     false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",
      "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests",
      true},

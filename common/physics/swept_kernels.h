@@ -1,0 +1,137 @@
+// The kernels of swept_lanes.h for one kind of vector. For the sources that are compiled for one
+// instruction set each: everything is a template of Pack, so that nothing compiled for one of them
+// is ever shared with another.
+//
+// Pack has kWidth <= kMostLanes, Vector, load, all, add, sub, mul, and at_most(a, b): a bit for
+// each lane in which a <= b.
+#pragma once
+
+#include "common/physics/swept_lanes.h"
+
+namespace fts::physics {
+
+template <typename Pack, bool kEqualRadii>
+struct SweptKernels {
+    using Vector = typename Pack::Vector;
+
+    static Vector squared_reach(const PathLanes& lanes, std::uint32_t j, Vector radius,
+                                Vector limit) {
+        if constexpr (kEqualRadii) {
+            return limit;
+        } else {
+            const Vector reach = Pack::add(Pack::load(lanes.radius + j), radius);
+            return Pack::add(Pack::mul(reach, reach), limit);
+        }
+    }
+
+    static std::uint32_t first_lanes(std::uint32_t count) {
+        return count >= Pack::kWidth ? (1U << Pack::kWidth) - 1U : (1U << count) - 1U;
+    }
+
+    // What is found is written down whether it is anything or not: few cells hold more than one
+    // vector, and whether they hold anybody near is not to be foreseen.
+    static std::size_t find_pairs(const PathLanes& lanes, const PairSearch& search,
+                                  PairCursor& cursor, FoundPairs* found, std::size_t room) {
+        const float *all_x = lanes.x, *all_y = lanes.y;
+        const float *all_ahead_x = lanes.ahead_x, *all_ahead_y = lanes.ahead_y;
+        const float reach = search.reach;
+        const std::uint32_t width = lanes.width, paths = lanes.paths, rows = search.rows;
+        const Vector limit = Pack::all(search.limit);
+        const FoundPairs* const full = found + (room - most_found(paths, rows));
+        FoundPairs* out = found;
+        std::uint32_t i = cursor.path, row = cursor.row;
+        for (; i < paths && out <= full; ++i) {
+            while (lanes.first[(row + 1) * width] <= i) ++row;
+            const std::uint32_t* cells = lanes.first + row * width;
+            const float x = all_x[i];
+            const Vector at_x = Pack::all(x), at_y = Pack::all(all_y[i]);
+            const Vector to_x = Pack::all(all_ahead_x[i]), to_y = Pack::all(all_ahead_y[i]);
+            const Vector radius = kEqualRadii ? Vector() : Pack::all(lanes.radius[i]);
+            const auto look = [&](std::uint32_t first, std::uint32_t last) {
+                for (;;) {
+                    const Vector dx = Pack::sub(Pack::load(all_x + first), at_x);
+                    const Vector dy = Pack::sub(Pack::load(all_y + first), at_y);
+                    const Vector ex = Pack::sub(Pack::load(all_ahead_x + first), to_x);
+                    const Vector ey = Pack::sub(Pack::load(all_ahead_y + first), to_y);
+                    const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
+                    const std::uint32_t bits =
+                        Pack::at_most(sum, squared_reach(lanes, first, radius, limit)) &
+                        first_lanes(last - first);
+                    *out = {i, first, bits};
+                    out += bits != 0 ? 1 : 0;
+                    if (last - first <= Pack::kWidth) return;
+                    first += Pack::kWidth;
+                }
+            };
+            const auto low = static_cast<std::int32_t>(x - reach);
+            const auto high = static_cast<std::int32_t>(x + reach) + 1;
+            look(i + 1, cells[high]);
+            for (std::uint32_t k = 1; k <= rows; ++k) {
+                look(cells[k * width + static_cast<std::uint32_t>(low)],
+                     cells[k * width + static_cast<std::uint32_t>(high)]);
+            }
+        }
+        cursor = {i, row};
+        return static_cast<std::size_t>(out - found);
+    }
+
+    template <typename Test>
+    static void search_window(const PathLanes& lanes, const CellWindow& window, FoundPath found,
+                              void* whom, Test test) {
+        for (std::uint32_t row = window.first_y; row <= window.last_y; ++row) {
+            const std::uint32_t* cells = lanes.first + row * lanes.width;
+            const std::uint32_t last = cells[window.last_x + 1];
+            for (std::uint32_t j = cells[window.first_x]; j < last; j += Pack::kWidth) {
+                std::uint32_t bits = test(j) & first_lanes(last - j);
+                for (; bits != 0; bits &= bits - 1) {
+                    found(whom, j + static_cast<std::uint32_t>(__builtin_ctz(bits)));
+                }
+            }
+        }
+    }
+
+    static void find_meeting(const PathLanes& lanes, const CellWindow& window,
+                             const PathSearch& search, FoundPath found, void* whom) {
+        const Vector at_x = Pack::all(search.x), at_y = Pack::all(search.y);
+        const Vector to_x = Pack::all(search.ahead_x), to_y = Pack::all(search.ahead_y);
+        const Vector half_time = Pack::all(search.half_time), limit = Pack::all(search.limit);
+        const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
+        search_window(lanes, window, found, whom, [&](std::uint32_t j) {
+            const Vector x = Pack::load(lanes.x + j), y = Pack::load(lanes.y + j);
+            const Vector ahead_x = Pack::load(lanes.ahead_x + j);
+            const Vector ahead_y = Pack::load(lanes.ahead_y + j);
+            const Vector way_x = Pack::mul(Pack::sub(ahead_x, x), half_time);
+            const Vector way_y = Pack::mul(Pack::sub(ahead_y, y), half_time);
+            const Vector dx = Pack::sub(Pack::add(x, way_x), at_x);
+            const Vector dy = Pack::sub(Pack::add(y, way_y), at_y);
+            const Vector ex = Pack::sub(Pack::sub(ahead_x, way_x), to_x);
+            const Vector ey = Pack::sub(Pack::sub(ahead_y, way_y), to_y);
+            const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
+            return Pack::at_most(sum, squared_reach(lanes, j, radius, limit));
+        });
+    }
+
+    static void find_touching(const PathLanes& lanes, const CellWindow& window,
+                              const TouchSearch& search, FoundPath found, void* whom) {
+        const Vector half_time = Pack::all(search.half_time);
+        search_window(lanes, window, found, whom, [&](std::uint32_t j) {
+            const Vector start_x = Pack::load(lanes.x + j), start_y = Pack::load(lanes.y + j);
+            const Vector way_x = Pack::sub(Pack::load(lanes.ahead_x + j), start_x);
+            const Vector way_y = Pack::sub(Pack::load(lanes.ahead_y + j), start_y);
+            const Vector x = Pack::add(start_x, Pack::mul(way_x, half_time));
+            const Vector y = Pack::add(start_y, Pack::mul(way_y, half_time));
+            const auto near = [&](int k) {
+                const Vector dx = Pack::sub(x, Pack::all(search.x[k]));
+                const Vector dy = Pack::sub(y, Pack::all(search.y[k]));
+                const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius[k]);
+                return Pack::at_most(Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy)),
+                                     squared_reach(lanes, j, radius, Pack::all(search.limit[k])));
+            };
+            return near(0) | near(1);
+        });
+    }
+
+    static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_touching};
+};
+
+}  // namespace fts::physics

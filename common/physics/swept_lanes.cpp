@@ -1,0 +1,106 @@
+#include "common/physics/swept_lanes.h"
+
+#include <initializer_list>
+
+#include "common/physics/swept_kernels.h"
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace fts::physics {
+
+#if defined(__x86_64__)
+const LaneKernels& lane_kernels_avx2(bool equal_radii);    // swept_lanes_avx2.cpp
+const LaneKernels& lane_kernels_avx512(bool equal_radii);  // swept_lanes_avx512.cpp
+#endif
+
+namespace {
+
+struct PlainPack {
+    static constexpr std::uint32_t kWidth = 4;
+    struct Vector {
+        float lane[kWidth];
+    };
+    template <typename Operation>
+    static Vector each(Operation operation) {
+        return {operation(0), operation(1), operation(2), operation(3)};
+    }
+    static Vector load(const float* from) {
+        return each([&](int k) { return from[k]; });
+    }
+    static Vector all(float value) {
+        return each([&](int) { return value; });
+    }
+    static Vector add(const Vector& a, const Vector& b) {
+        return each([&](int k) { return a.lane[k] + b.lane[k]; });
+    }
+    static Vector sub(const Vector& a, const Vector& b) {
+        return each([&](int k) { return a.lane[k] - b.lane[k]; });
+    }
+    static Vector mul(const Vector& a, const Vector& b) {
+        return each([&](int k) { return a.lane[k] * b.lane[k]; });
+    }
+    static std::uint32_t at_most(const Vector& a, const Vector& b) {
+        std::uint32_t bits = 0;
+        for (std::uint32_t k = 0; k < kWidth; ++k) {
+            bits |= static_cast<std::uint32_t>(a.lane[k] <= b.lane[k]) << k;
+        }
+        return bits;
+    }
+};
+
+#if defined(__SSE2__)
+struct Sse2Pack {
+    static constexpr std::uint32_t kWidth = 4;
+    using Vector = __m128;
+    static Vector load(const float* from) { return _mm_loadu_ps(from); }
+    static Vector all(float value) { return _mm_set1_ps(value); }
+    static Vector add(Vector a, Vector b) { return _mm_add_ps(a, b); }
+    static Vector sub(Vector a, Vector b) { return _mm_sub_ps(a, b); }
+    static Vector mul(Vector a, Vector b) { return _mm_mul_ps(a, b); }
+    static std::uint32_t at_most(Vector a, Vector b) {
+        return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a, b)));
+    }
+};
+#endif
+
+template <typename Pack>
+const LaneKernels* kernels_of(bool equal_radii) {
+    return equal_radii ? &SweptKernels<Pack, true>::kTable : &SweptKernels<Pack, false>::kTable;
+}
+
+}  // namespace
+
+const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii) {
+    switch (width) {
+        case LaneWidth::kPlain:
+            return kernels_of<PlainPack>(equal_radii);
+        case LaneWidth::kSse2:
+#if defined(__SSE2__)
+            return kernels_of<Sse2Pack>(equal_radii);
+#else
+            return nullptr;
+#endif
+#if defined(__x86_64__)
+        case LaneWidth::kAvx2:
+            return __builtin_cpu_supports("avx2") ? &lane_kernels_avx2(equal_radii) : nullptr;
+        case LaneWidth::kAvx512:
+            return __builtin_cpu_supports("avx512f") ? &lane_kernels_avx512(equal_radii) : nullptr;
+#else
+        case LaneWidth::kAvx2:
+        case LaneWidth::kAvx512:
+            return nullptr;
+#endif
+    }
+    return nullptr;
+}
+
+const LaneKernels& lane_kernels(bool equal_radii) {
+    for (const LaneWidth width : {LaneWidth::kAvx512, LaneWidth::kAvx2, LaneWidth::kSse2}) {
+        if (const LaneKernels* kernels = lane_kernels(width, equal_radii)) return *kernels;
+    }
+    return *lane_kernels(LaneWidth::kPlain, equal_radii);
+}
+
+}  // namespace fts::physics

@@ -1,0 +1,371 @@
+#include "common/physics/swept_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/physics/crowd_range.h"
+
+namespace fts::physics {
+namespace {
+
+// A fit looks at about so many bodies, and holds for so many spans.
+constexpr std::size_t kSampledBodies = 1024;
+constexpr std::uint32_t kSpansPerFit = 64;
+
+// Who moves or measures more than so many times what most do is a stray.
+constexpr double kMost = 0.9;
+constexpr double kWaysOfMost = 2.3;
+constexpr double kRadiiOfMost = 1.5;
+// A span may be so much shorter than what the grid was fitted to before that is wasteful.
+constexpr double kShortestSpan = 0.5;
+
+constexpr std::size_t kFoundAtOnce = 256;
+constexpr std::size_t kCellsPerBody = 2;
+constexpr std::size_t kExtraCells = 16;
+// With the margins, however the bodies lie.
+constexpr std::size_t kMostCellsPerBody = 24;
+constexpr std::uint32_t kMostRows = 4;  // of cells, on which an end of a pair may lie
+
+// Bodies that turn may become faster than those that start by so much, near the end of the span.
+constexpr float kWayWhenTurned = 16.0F;
+
+constexpr float kFloatEpsilon = std::numeric_limits<float>::epsilon();
+// By how many units of its round-off a place may be wrong.
+constexpr float kPlaceUnits = 4.0F;
+// What that is at most for the square of a distance, in units of the longest one that matters.
+constexpr float kSlackBlurs = 24.0F;
+
+template <typename Scalar>
+Scalar sampled(std::vector<Scalar>& values, double q) {
+    return values.empty() ? Scalar(0) : quantile(values, q);
+}
+
+}  // namespace
+
+template <typename Scalar>
+void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s) {
+    if (must_fit(bodies.ids.size(), equal_radii, span_s)) fit(bodies, equal_radii, span_s);
+    ++spans_since_fit_;
+    span_s_ = span_s;
+    per_mps_ = Scalar(2) * span_s * per_m_;
+    if (!is_known_order(bodies)) {
+        order_.clear();
+        for (const BodyId id : bodies.ids) order_.push_back(id.index);
+    }
+    if (equal_radii) {
+        find_cells<true>(bodies);
+        sort<true>(bodies);
+    } else {
+        find_cells<false>(bodies);
+        sort<false>(bodies);
+    }
+    if (spans_since_fit_ == 1) fitted_strays_ = strays_.size();
+}
+
+template <typename Scalar>
+bool SweptPaths<Scalar>::must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const {
+    return spans_since_fit_ >= kSpansPerFit || equal_radii != equal_radii_ ||
+           span_s > fitted_span_s_ ||
+           span_s < static_cast<Scalar>(kShortestSpan) * fitted_span_s_ ||
+           strays_.size() > 2 * fitted_strays_ + bodies / 32 + 4 || bodies > 2 * fitted_bodies_ ||
+           2 * bodies < fitted_bodies_;
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::fit(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s) {
+    const std::size_t count = bodies.ids.size();
+    const std::size_t stride = 1 + count / kSampledBodies;
+    const auto sample = [&](auto&& value_of) {
+        sample_.clear();
+        for (std::size_t i = 0; i < count; i += stride) {
+            sample_.push_back(value_of(bodies.ids[i].index));
+        }
+    };
+    Vec low = Vec::Zero(), high = Vec::Zero();
+    for (int axis = 0; axis < 2 && count > 0; ++axis) {
+        Scalar least = bodies.position_m[bodies.ids[0].index][axis], most = least;
+        for (const BodyId id : bodies.ids) {
+            least = std::min(least, bodies.position_m[id.index][axis]);
+            most = std::max(most, bodies.position_m[id.index][axis]);
+        }
+        sample([&](std::uint32_t body) { return bodies.position_m[body][axis]; });
+        const CrowdRange<Scalar> range = crowd_range(sample_);
+        low[axis] = std::max(least, range.low - range.margin);
+        high[axis] = std::min(most, range.high + range.margin);
+    }
+    sample([&](std::uint32_t body) { return bodies.velocity_mps[body].cwiseAbs().maxCoeff(); });
+    const Scalar way = static_cast<Scalar>(kWaysOfMost) * sampled(sample_, kMost) * span_s;
+    sample([&](std::uint32_t body) { return bodies.radius_m[body]; });
+    largest_radius_m_ = sampled(sample_, 1.0);
+    if (!equal_radii) {
+        largest_radius_m_ = std::min(largest_radius_m_,
+                                     static_cast<Scalar>(kRadiiOfMost) * sampled(sample_, kMost));
+    }
+    reserve(bodies.slots());
+    fitted_span_s_ = span_s;
+    fitted_bodies_ = count;
+    spans_since_fit_ = 0;
+    equal_radii_ = equal_radii;
+    fit_cells(low, high, way, count);
+    fit_limits(equal_radii);
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::reserve(std::size_t bodies) {
+    first_.reserve(kMostCellsPerBody * (bodies + 2 * kExtraCells));
+    for (std::vector<float>* lane : {&x_, &y_, &ahead_x_, &ahead_y_, &radius_}) {
+        lane->reserve(bodies + kMostLanes);
+    }
+    for (std::vector<std::uint32_t>* by_body : {&order_, &cell_, &body_, &strays_}) {
+        by_body->reserve(bodies);
+    }
+    starts_.reserve(bodies);
+    found_.reserve(most_found(bodies, kMostRows) + kFoundAtOnce);
+    sample_.reserve(kSampledBodies);
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::fit_cells(const Vec& low_m, const Vec& high_m, Scalar way_m,
+                                   std::size_t bodies) {
+    const Vec extent = high_m - low_m;
+    const auto cells = static_cast<Scalar>(bodies + kExtraCells);
+    const Scalar spacing = std::sqrt(extent.x() * extent.y() / cells);
+    const Scalar least_way = Scalar(0.01) * largest_radius_m_;
+    const Scalar way = std::max(way_m, least_way);
+    constexpr Scalar kRounded = Scalar(1.01);
+    const Scalar reach = kRounded * (Scalar(2) * largest_radius_m_ + Scalar(2) * way);
+    const Scalar wanted = std::max(Scalar(2) * largest_radius_m_, Scalar(0.7) * spacing);
+    const Scalar rows =
+        std::clamp(std::floor(reach / wanted), Scalar(1), static_cast<Scalar>(kMostRows));
+    cell_m_ = std::max({reach / rows, spacing / std::sqrt(static_cast<Scalar>(kCellsPerBody)),
+                        extent.maxCoeff() / cells});
+    per_m_ = Scalar(1) / cell_m_;
+    const bool fits = std::isfinite(per_m_) && std::isfinite(cell_m_) &&
+                      std::isfinite(extent.maxCoeff() * per_m_);
+    if (!fits) per_m_ = cell_m_ = Scalar(0);
+    margin_ = static_cast<std::uint32_t>(fits ? rows : Scalar(1));
+    columns_ = fits ? static_cast<std::uint32_t>(extent.x() * per_m_) + 2 : 0;
+    rows_ = fits ? static_cast<std::uint32_t>(extent.y() * per_m_) + 2 : 0;
+    const Scalar border = (static_cast<Scalar>(margin_) + Scalar(0.5)) * cell_m_;
+    origin_m_ = low_m - Vec::Constant(border);
+    width_ = columns_ + 2 * margin_;
+    height_ = rows_ + 2 * margin_;
+    longest_way_ = static_cast<float>(way * per_m_);
+    largest_radius_ = static_cast<float>(largest_radius_m_ * per_m_);
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::fit_limits(bool equal_radii) {
+    const float size = static_cast<float>(std::max(width_, height_));
+    const auto far = static_cast<float>(origin_m_.cwiseAbs().maxCoeff() * per_m_);
+    blur_ = kPlaceUnits * kFloatEpsilon * (size + 2.0F * kWayWhenTurned * longest_way_) +
+            kPlaceUnits * static_cast<float>(std::numeric_limits<Scalar>::epsilon()) * (far + size);
+    reach_ = 2.0F * largest_radius_ + 2.0F * longest_way_ + kNearBlurs * blur_;
+    if (!(reach_ <= static_cast<float>(margin_))) columns_ = 0;
+    const float longest = 2.0F * largest_radius_ + 8.0F * longest_way_ + 1.0F;
+    slack_ = kSlackBlurs * longest * blur_;
+    const float reach = 2.0F * largest_radius_;
+    limit_ = equal_radii ? reach * reach + slack_ : slack_;
+}
+
+template <typename Scalar>
+bool SweptPaths<Scalar>::is_known_order(const Bodies<Scalar>& bodies) const {
+    return order_.size() == bodies.ids.size() &&
+           std::all_of(order_.begin(), order_.end(), [&](std::uint32_t body) {
+               return body < bodies.slots() && bodies.alive[body] != 0;
+           });
+}
+
+template <typename Scalar>
+template <bool kEqualRadii>
+void SweptPaths<Scalar>::find_cells(const Bodies<Scalar>& bodies) {
+    const auto low = static_cast<float>(margin_);
+    const float high_x = static_cast<float>(margin_ + columns_);
+    const float high_y = static_cast<float>(margin_ + rows_);
+    const float longest = 2.0F * longest_way_;
+    cell_.resize(bodies.slots());
+    starts_.resize(order_.size());
+    first_.assign(std::size_t{width_} * height_ + 2, 0);
+    strays_.clear();
+    Start* start = starts_.data();
+    for (const std::uint32_t body : order_) {
+        const Vec& position = bodies.position_m[body];
+        const Vec& velocity = bodies.velocity_mps[body];
+        const float x = cells_x(position.x()), y = cells_y(position.y());
+        const auto way_x = static_cast<float>(velocity.x() * per_mps_);
+        const auto way_y = static_cast<float>(velocity.y() * per_mps_);
+        bool fits = x >= low && x < high_x && y >= low && y < high_y &&
+                    std::abs(way_x) <= longest && std::abs(way_y) <= longest;
+        if constexpr (!kEqualRadii) fits = fits && bodies.radius_m[body] <= largest_radius_m_;
+        if (!fits) {
+            strays_.push_back(body);
+            cell_[body] = kNoCell;
+            continue;
+        }
+        const std::uint32_t cell =
+            static_cast<std::uint32_t>(static_cast<std::int32_t>(y)) * width_ +
+            static_cast<std::uint32_t>(static_cast<std::int32_t>(x));
+        cell_[body] = cell;
+        ++first_[cell + 2];
+        *start++ = {x, y, way_x, way_y, cell, body};
+    }
+    starts_.resize(static_cast<std::size_t>(start - starts_.data()));
+}
+
+// Counts lie two places on, so that they turn into the first path of each cell while it is filled.
+template <typename Scalar>
+template <bool kEqualRadii>
+void SweptPaths<Scalar>::sort(const Bodies<Scalar>& bodies) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& first : first_) first = sum += first;
+    pad();
+    for (const Start& start : starts_) {
+        const std::uint32_t path = first_[start.cell + 1]++;
+        x_[path] = start.x;
+        y_[path] = start.y;
+        ahead_x_[path] = start.x + start.way_x;
+        ahead_y_[path] = start.y + start.way_y;
+        if constexpr (!kEqualRadii) {
+            radius_[path] = static_cast<float>(bodies.radius_m[start.body] * per_m_);
+        }
+        body_[path] = start.body;
+    }
+    std::copy(body_.begin(), body_.end(), order_.begin());
+    std::copy(strays_.begin(), strays_.end(),
+              order_.begin() + static_cast<std::ptrdiff_t>(body_.size()));
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::pad() {
+    constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+    const std::size_t paths = starts_.size();
+    body_.resize(paths);
+    found_.resize(most_found(paths, margin_) + kFoundAtOnce);
+    kernels_ = &lane_kernels(equal_radii_);
+    for (std::vector<float>* lane : {&x_, &y_, &ahead_x_, &ahead_y_}) {
+        lane->resize(paths + kMostLanes);
+        std::fill_n(lane->begin() + static_cast<std::ptrdiff_t>(paths), kMostLanes, kNowhere);
+    }
+    if (!equal_radii_) radius_.resize(paths + kMostLanes, 0.0F);
+}
+
+template <typename Scalar>
+std::uint32_t SweptPaths<Scalar>::path_of(std::uint32_t body) const {
+    std::uint32_t path = first_[cell_[body]];
+    while (body_[path] != body) ++path;
+    return path;
+}
+
+template <typename Scalar>
+bool SweptPaths<Scalar>::follow(std::uint32_t body, const Motion& motion) {
+    const std::uint32_t cell = cell_[body];
+    if (cell == kNoCell) return false;
+    const float x = cells_x(motion.position_m.x()), y = cells_y(motion.position_m.y());
+    const auto way_x = static_cast<float>(motion.velocity_mps.x() * per_mps_);
+    const auto way_y = static_cast<float>(motion.velocity_mps.y() * per_mps_);
+    const float half = half_time(motion.since_s), left = 0.5F - half;
+    const auto stays = [&](float from, float way, std::uint32_t index) {
+        const float low = static_cast<float>(index) - longest_way_;
+        const float high = static_cast<float>(index + 1) + longest_way_;
+        const float to = from + way * left;
+        return low <= from && from <= high && low <= to && to <= high &&
+               std::abs(way) <= 2.0F * kWayWhenTurned * longest_way_ &&
+               std::abs(way * left) <= 2.0F * longest_way_;
+    };
+    const std::uint32_t path = path_of(body);
+    if (!stays(x, way_x, cell % width_) || !stays(y, way_y, cell / width_)) {
+        remove(body);
+        return false;
+    }
+    x_[path] = x - way_x * half;
+    y_[path] = y - way_y * half;
+    ahead_x_[path] = x_[path] + way_x;
+    ahead_y_[path] = y_[path] + way_y;
+    return true;
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::remove(std::uint32_t body) {
+    if (cell_[body] == kNoCell) return;
+    x_[path_of(body)] = std::numeric_limits<float>::quiet_NaN();
+    cell_[body] = kNoCell;
+}
+
+template <typename Scalar>
+std::pair<std::uint32_t, std::uint32_t> SweptPaths<Scalar>::cells_within(
+    float low, float high, std::uint32_t cells) const {
+    const auto last = static_cast<float>(cells);
+    const float first = std::ceil(low + kNearBlurs * blur_);
+    const float end = std::floor(high - kNearBlurs * blur_);
+    if (!(first < end)) return {0, 0};
+    return {static_cast<std::uint32_t>(std::clamp(first, 0.0F, last)),
+            static_cast<std::uint32_t>(std::clamp(end, 0.0F, last))};
+}
+
+template <typename Scalar>
+CellWindow SweptPaths<Scalar>::window(float min_x, float min_y, float max_x, float max_y) const {
+    const auto end_x = static_cast<float>(width_), end_y = static_cast<float>(height_);
+    if (!(min_x < end_x && min_y < end_y && max_x >= 0.0F && max_y >= 0.0F) || columns_ == 0) {
+        return {1, 1, 0, 0};
+    }
+    const auto index = [](float place, float last) {
+        return static_cast<std::uint32_t>(std::clamp(place, 0.0F, last));
+    };
+    return {index(min_x, end_x - 1.0F), index(min_y, end_y - 1.0F), index(max_x, end_x - 1.0F),
+            index(max_y, end_y - 1.0F)};
+}
+
+template <typename Scalar>
+PathLanes SweptPaths<Scalar>::lanes() const {
+    return {x_.data(),       y_.data(),      ahead_x_.data(),
+            ahead_y_.data(), radius_.data(), first_.data(),
+            width_,          height_,        static_cast<std::uint32_t>(body_.size())};
+}
+
+template <typename Scalar>
+CellWindow SweptPaths<Scalar>::prepare(const Motion& motion, PathSearch& search) const {
+    const float x = cells_x(motion.position_m.x()), y = cells_y(motion.position_m.y());
+    const float half = half_time(motion.since_s), left = 0.5F - half;
+    const auto way_x = static_cast<float>(motion.velocity_mps.x() * per_mps_);
+    const auto way_y = static_cast<float>(motion.velocity_mps.y() * per_mps_);
+    const auto radius = static_cast<float>(motion.radius_m * per_m_);
+    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_};
+    const float near = radius + largest_radius_ + longest_way_ + kNearBlurs * blur_;
+    const float to_x = x + left * way_x, to_y = y + left * way_y;
+    return window(std::min(x, to_x) - near, std::min(y, to_y) - near, std::max(x, to_x) + near,
+                  std::max(y, to_y) + near);
+}
+
+template <typename Scalar>
+CellWindow SweptPaths<Scalar>::prepare(const Touching& first, const Touching& second,
+                                       Scalar since_s, TouchSearch& search) const {
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    float min_x = kInfinite, min_y = kInfinite, max_x = -kInfinite, max_y = -kInfinite;
+    search.half_time = half_time(since_s);
+    for (const int k : {0, 1}) {
+        const Touching& disc = k == 0 ? first : second;
+        const bool asked = disc.radius_m > Scalar(0);
+        const float x = cells_x(disc.position_m.x()), y = cells_y(disc.position_m.y());
+        const auto radius = static_cast<float>(disc.radius_m * per_m_);
+        const float more = static_cast<float>(disc.tolerance_m * per_m_) + kNearBlurs * blur_;
+        const float reach = radius + largest_radius_;
+        search.x[k] = x;
+        search.y[k] = y;
+        search.radius[k] = radius;
+        const float slack = slack_ + (2.0F * reach + more) * more;
+        search.limit[k] = !asked ? -kInfinite : equal_radii_ ? reach * reach + slack : slack;
+        if (!asked) continue;
+        const float near = reach + longest_way_ + more + kNearBlurs * blur_;
+        min_x = std::min(min_x, x - near);
+        min_y = std::min(min_y, y - near);
+        max_x = std::max(max_x, x + near);
+        max_y = std::max(max_y, y + near);
+    }
+    return window(min_x, min_y, max_x, max_y);
+}
+
+template class SweptPaths<double>;
+template class SweptPaths<float>;
+
+}  // namespace fts::physics

@@ -1,0 +1,238 @@
+// Which bodies may meet within a span: their straight paths, sorted by the cell of a uniform grid
+// that they start in, and searched many at a time (swept_lanes.h). What is found is a superset of
+// all pairs that touch, in an order that is of no account.
+//
+// The grid is fitted to where most bodies are and to what most of them are like, and kept for many
+// spans. Who starts elsewhere, moves further within the span than most, or is larger, is a stray,
+// whom the caller must keep elsewhere; when there are many more strays than after the last fit, the
+// grid is fitted anew. No allocation after warm-up.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/physics/bodies.h"
+#include "common/physics/broadphase.h"
+#include "common/physics/swept_lanes.h"
+
+namespace fts::physics {
+
+template <typename Scalar>
+class SweptPaths {
+  public:
+    using Vec = Vec2<Scalar>;
+    struct Motion {
+        Vec position_m = Vec::Zero();  // at `since_s` of the span
+        Vec velocity_mps = Vec::Zero();
+        Scalar radius_m = Scalar(0);
+        Scalar since_s = Scalar(0);
+    };
+    struct Touching {
+        Vec position_m = Vec::Zero();
+        Scalar radius_m = Scalar(0);  // 0: nobody touches it
+        Scalar tolerance_m = Scalar(0);
+    };
+
+    // Sorts where everybody is at the start of a span of `span_s` >= 0.
+    void begin(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s);
+
+    std::span<const std::uint32_t> strays() const { return strays_; }
+    bool is_stray(std::uint32_t body) const { return cell_[body] == kNoCell; }
+    // Those that are not strays stay so near to their span's start on each axis, and none of them
+    // is larger.
+    Scalar longest_way_m() const { return static_cast<Scalar>(longest_way_) * cell_m_; }
+    Scalar largest_radius_m() const { return largest_radius_m_; }
+
+    // visit(a, b) once for each pair that may touch within the span, strays aside.
+    template <typename Visit>
+    void for_each_pair(Visit&& visit);
+
+    // visit(body) for each that does not certainly start within the box, strays aside.
+    template <typename Visit>
+    void for_each_outside(const Box<Scalar>& box, Visit&& visit) const;
+
+    // The body moves like this from now on. False when that makes it a stray.
+    bool follow(std::uint32_t body, const Motion& motion);
+    void remove(std::uint32_t body);
+
+    // visit(other) for each that may touch who moves like this and is no stray, or an image of such
+    // a one; itself among them.
+    template <typename Visit>
+    void for_each_meeting(const Motion& motion, Visit&& visit) const;
+    // The same for a stray that stays within the box.
+    template <typename Visit>
+    void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
+    // visit(other) for each that may touch one of two discs at this time; themselves among them.
+    template <typename Visit>
+    void for_each_touching(const Touching& first, const Touching& second, Scalar since_s,
+                           Visit&& visit) const;
+
+  private:
+    struct Start {
+        float x, y;          // in cells
+        float way_x, way_y;  // twice the motion of the span
+        std::uint32_t cell, body;
+    };
+
+    static constexpr std::uint32_t kNoCell = 0xffffffff;
+    // By how many blurs a search goes further than it need.
+    static constexpr float kNearBlurs = 4.0F;
+
+    bool must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const;
+    void fit(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s);
+    void reserve(std::size_t bodies);
+    void fit_cells(const Vec& low_m, const Vec& high_m, Scalar way_m, std::size_t bodies);
+    void fit_limits(bool equal_radii);
+    bool is_known_order(const Bodies<Scalar>& bodies) const;
+    template <bool kEqualRadii>
+    void find_cells(const Bodies<Scalar>& bodies);
+    template <bool kEqualRadii>
+    void sort(const Bodies<Scalar>& bodies);
+    void pad();
+    std::uint32_t path_of(std::uint32_t body) const;
+    float cells_x(Scalar x_m) const { return static_cast<float>((x_m - origin_m_.x()) * per_m_); }
+    float cells_y(Scalar y_m) const { return static_cast<float>((y_m - origin_m_.y()) * per_m_); }
+    float half_time(Scalar since_s) const {
+        return span_s_ > Scalar(0) ? static_cast<float>(Scalar(0.5) * since_s / span_s_) : 0.0F;
+    }
+    // Those that lie between the two whatever the round-off: [first, end), end >= first.
+    std::pair<std::uint32_t, std::uint32_t> cells_within(float low, float high,
+                                                         std::uint32_t cells) const;
+    CellWindow window(float min_x, float min_y, float max_x, float max_y) const;
+    PathLanes lanes() const;
+    CellWindow prepare(const Motion& motion, PathSearch& search) const;
+    CellWindow prepare(const Touching& first, const Touching& second, Scalar since_s,
+                       TouchSearch& search) const;
+
+    // The fit.
+    Vec origin_m_ = Vec::Zero();
+    Scalar cell_m_ = Scalar(0), per_m_ = Scalar(0);
+    Scalar largest_radius_m_ = Scalar(0);
+    Scalar fitted_span_s_ = Scalar(-1);
+    std::size_t fitted_bodies_ = 0, fitted_strays_ = 0;
+    std::uint32_t spans_since_fit_ = 0;
+    bool equal_radii_ = false;
+    std::uint32_t columns_ = 0, rows_ = 0;  // in which paths may start
+    std::uint32_t margin_ = 0;              // cells round them
+    std::uint32_t width_ = 0, height_ = 0;
+    float longest_way_ = 0.0F;  // of one that is no stray, on an axis
+    float largest_radius_ = 0.0F;
+    float blur_ = 0.0F;   // how far off a place may be for round-off
+    float slack_ = 0.0F;  // what that does to the square of a distance
+    float limit_ = 0.0F;
+    float reach_ = 0.0F;  // within which, on each axis, two start that may meet
+
+    // The span.
+    Scalar span_s_ = Scalar(0);
+    Scalar per_mps_ = Scalar(0);        // twice the cells that one metre a second leads in the span
+    std::vector<std::uint32_t> order_;  // the bodies in the order of the last sort
+    std::vector<Start> starts_;
+    std::vector<std::uint32_t> cell_;   // by body; kNoCell for a stray
+    std::vector<std::uint32_t> first_;  // by cell
+    std::vector<float> x_, y_, ahead_x_, ahead_y_, radius_;
+    std::vector<std::uint32_t> body_;  // by path
+    std::vector<std::uint32_t> strays_;
+    std::vector<FoundPairs> found_;
+    const LaneKernels* kernels_ = nullptr;
+    std::vector<Scalar> sample_;
+};
+
+template <typename Scalar>
+template <typename Visit>
+void SweptPaths<Scalar>::for_each_pair(Visit&& visit) {
+    const PathLanes all = lanes();
+    PairCursor cursor;
+    while (cursor.path < all.paths) {
+        const std::size_t count = kernels_->find_pairs(all, {reach_, margin_, limit_}, cursor,
+                                                       found_.data(), found_.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto [path, first, bits] = found_[i];
+            for (std::uint32_t left = bits; left != 0; left &= left - 1) {
+                visit(body_[path],
+                      body_[first + static_cast<std::uint32_t>(std::countr_zero(left))]);
+            }
+        }
+    }
+}
+
+template <typename Scalar>
+template <typename Visit>
+void SweptPaths<Scalar>::for_each_outside(const Box<Scalar>& box, Visit&& visit) const {
+    const auto [first_x, end_x] = cells_within(cells_x(box.min_x_m), cells_x(box.max_x_m), width_);
+    const auto [first_y, end_y] = cells_within(cells_y(box.min_y_m), cells_y(box.max_y_m), height_);
+    const auto visit_cells = [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t i = first_[first]; i < first_[end]; ++i) visit(body_[i]);
+    };
+    for (std::uint32_t row = 0; row < height_; ++row) {
+        const std::uint32_t cells = row * width_;
+        if (row < first_y || row >= end_y) {
+            visit_cells(cells, cells + width_);
+        } else {
+            visit_cells(cells, cells + first_x);
+            visit_cells(cells + end_x, cells + width_);
+        }
+    }
+}
+
+template <typename Scalar>
+template <typename Visit>
+void SweptPaths<Scalar>::for_each_meeting(const Motion& motion, Visit&& visit) const {
+    struct Whom {
+        const std::uint32_t* body;
+        Visit& visit;
+    } whom = {body_.data(), visit};
+    PathSearch search = {};
+    const CellWindow cells = prepare(motion, search);
+    kernels_->find_meeting(
+        lanes(), cells, search,
+        [](void* to, std::uint32_t j) {
+            const Whom& known = *static_cast<Whom*>(to);
+            known.visit(known.body[j]);
+        },
+        &whom);
+}
+
+template <typename Scalar>
+template <typename Visit>
+void SweptPaths<Scalar>::for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const {
+    const float near = largest_radius_ + 2.0F * longest_way_ + kNearBlurs * blur_;
+    const float min_x = cells_x(box.min_x_m) - near, max_x = cells_x(box.max_x_m) + near;
+    const float min_y = cells_y(box.min_y_m) - near, max_y = cells_y(box.max_y_m) + near;
+    const CellWindow cells = window(min_x, min_y, max_x, max_y);
+    const float half = half_time(since_s);
+    for (std::uint32_t row = cells.first_y; row <= cells.last_y; ++row) {
+        const std::uint32_t last = first_[row * width_ + cells.last_x + 1];
+        for (std::uint32_t j = first_[row * width_ + cells.first_x]; j < last; ++j) {
+            const float x = x_[j] + (ahead_x_[j] - x_[j]) * half;
+            const float y = y_[j] + (ahead_y_[j] - y_[j]) * half;
+            if (min_x <= x && x <= max_x && min_y <= y && y <= max_y) visit(body_[j]);
+        }
+    }
+}
+
+template <typename Scalar>
+template <typename Visit>
+void SweptPaths<Scalar>::for_each_touching(const Touching& first, const Touching& second,
+                                           Scalar since_s, Visit&& visit) const {
+    struct Whom {
+        const std::uint32_t* body;
+        Visit& visit;
+    } whom = {body_.data(), visit};
+    TouchSearch search = {};
+    const CellWindow cells = prepare(first, second, since_s, search);
+    kernels_->find_touching(
+        lanes(), cells, search,
+        [](void* to, std::uint32_t j) {
+            const Whom& known = *static_cast<Whom*>(to);
+            known.visit(known.body[j]);
+        },
+        &whom);
+}
+
+extern template class SweptPaths<double>;
+extern template class SweptPaths<float>;
+
+}  // namespace fts::physics
