@@ -1,12 +1,10 @@
 #include "common/physics/cell_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "common/physics/crowd_range.h"
-#include "common/physics/near_lanes.h"
 
 namespace fts::physics {
 namespace {
@@ -18,6 +16,13 @@ constexpr std::uint32_t kFewestCells = 16;
 constexpr double kMargin = 8.0;
 // How many discs tell where most of them are.
 constexpr std::size_t kSample = 256;
+// With less of a margin, in units of the largest sum of radii, hardly any discs are near.
+constexpr double kFewMargin = 0.02;
+constexpr std::uint32_t kBeyondCells = 3;
+
+std::uint32_t most_cells_for(std::uint32_t discs) {
+    return static_cast<std::uint32_t>(kCellsPerDisc * discs) + kFewestCells;
+}
 
 }  // namespace
 
@@ -63,34 +68,34 @@ void CellGrid<Scalar>::fit(const Discs<Scalar>& discs,
             fit_axis(axis, a == 0 ? discs.x_m : discs.y_m);
         }
     }
-    const auto most_cells =
-        static_cast<std::uint32_t>(kCellsPerDisc * discs.count()) + kFewestCells;
-    const Scalar reach = Scalar(2) * discs.largest_radius_m;
-    const Scalar area = axis_[0].extent_m * axis_[1].extent_m;
-    const Scalar height = std::max(reach, std::sqrt(area / static_cast<Scalar>(most_cells)));
-    divide(axis_[1], height, most_cells);
-    divide(axis_[0], reach, std::max(1U, most_cells / axis_[1].cells));
-    stride_ = axis_[0].cells + 2;
-
-    // A row of images above the last, and what is read beyond the last cell.
-    first_.resize(std::size_t{stride_} * (axis_[1].cells + 1) + 3);
+    first_.reserve(std::size_t{3} * (most_cells_for(discs.count()) + kBeyondCells));
     cell_.reserve(discs.count());
 }
 
 template <typename Scalar>
-void CellGrid<Scalar>::find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs) {
+void CellGrid<Scalar>::lay_out(std::uint32_t discs, Scalar reach_m) {
+    const std::uint32_t most_cells = most_cells_for(discs);
+    const Scalar area = axis_[0].extent_m * axis_[1].extent_m;
+    const Scalar height = std::max(reach_m, std::sqrt(area / static_cast<Scalar>(most_cells)));
+    divide(axis_[1], height, most_cells);
+    divide(axis_[0], reach_m, std::max(1U, most_cells / axis_[1].cells));
+    stride_ = axis_[0].cells + 2;
+    // A row of images above the last, and what is read beyond the last cell.
+    first_.assign(std::size_t{stride_} * (axis_[1].cells + 1) + kBeyondCells, 0);
+}
+
+template <typename Scalar>
+void CellGrid<Scalar>::find_near(const Discs<Scalar>& discs, Scalar margin_m, NearPairs& pairs) {
+    const Scalar largest = discs.largest_radius_m + discs.largest_radius_m;
+    lay_out(discs.count(), largest + margin_m);
     sort(discs);
-    if (discs.radius_m.empty()) {
-        const Scalar reach = discs.largest_radius_m + discs.largest_radius_m;
-        search<true>(reach * reach, pairs);
-    } else {
-        search<false>(Scalar(0), pairs);
-    }
+    const bool few = margin_m < static_cast<Scalar>(kFewMargin) * largest;
+    discs.radius_m.empty() ? search<true>(largest + margin_m, few, pairs)
+                           : search<false>(margin_m, few, pairs);
 }
 
 template <typename Scalar>
 void CellGrid<Scalar>::count_cells(const Discs<Scalar>& discs) {
-    std::fill(first_.begin(), first_.end(), 0);
     cell_.resize(discs.count());
     images_.clear();
     const Axis column = axis_[0], row = axis_[1];
@@ -110,7 +115,7 @@ template <typename Scalar>
 void CellGrid<Scalar>::add_images(const Discs<Scalar>& discs) {
     const std::uint32_t columns = axis_[0].cells, rows = axis_[1].cells;
     const auto add = [&](std::uint32_t disc, Scalar x_m, Scalar y_m, std::uint32_t cell) {
-        images_.push_back({x_m, y_m, {disc, cell}});
+        images_.push_back({x_m, y_m, disc, cell});
         ++first_[cell];
     };
     const auto add_row = [&](std::uint32_t disc, Scalar y_m, std::uint32_t cell,
@@ -136,19 +141,19 @@ void CellGrid<Scalar>::sort(const Discs<Scalar>& discs) {
     count_cells(discs);
     if (periodic_) add_images(discs);
     std::uint32_t total = 0;
-    for (std::uint32_t& first : first_) first = total += first;
-
-    // What pads the last run is near to nothing.
-    constexpr Scalar kFarAway = std::numeric_limits<Scalar>::infinity();
-    for (std::vector<Scalar>* values : {&x_m_, &y_m_}) {
-        values->resize(total + kLanes);
-        std::fill(values->end() - kLanes, values->end(), kFarAway);
+    most_in_cell_ = 0;
+    for (std::uint32_t& first : first_) {
+        most_in_cell_ = std::max(most_in_cell_, first);
+        first = total += first;
     }
-    placed_.resize(total + kLanes);
+
+    x_m_.resize(total + kMostLanes);
+    y_m_.resize(total + kMostLanes);
+    disc_.resize(total + kMostLanes);
     if (discs.radius_m.empty()) {
         put_into_cells<true>(discs);
     } else {
-        radius_m_.resize(total + kLanes);
+        radius_m_.resize(total + kMostLanes);
         put_into_cells<false>(discs);
     }
 }
@@ -158,60 +163,40 @@ template <typename Scalar>
 template <bool kEqualRadii>
 void CellGrid<Scalar>::put_into_cells(const Discs<Scalar>& discs) {
     Scalar *const x = x_m_.data(), *const y = y_m_.data();
-    Placed* const placed = placed_.data();
-    std::uint32_t* const first = first_.data();
-    const auto put = [&](Scalar x_m, Scalar y_m, Placed what) {
-        const std::uint32_t to = --first[what.cell];
+    std::uint32_t *const disc = disc_.data(), *const first = first_.data();
+    const auto put = [&](Scalar x_m, Scalar y_m, std::uint32_t which, std::uint32_t cell) {
+        const std::uint32_t to = --first[cell];
         x[to] = x_m;
         y[to] = y_m;
-        placed[to] = what;
-        if constexpr (!kEqualRadii) radius_m_[to] = discs.radius_m[what.disc];
+        disc[to] = which;
+        if constexpr (!kEqualRadii) radius_m_[to] = discs.radius_m[which];
     };
-    for (const Image& image : images_) put(image.x_m, image.y_m, image.placed);
+    for (const Image& image : images_) put(image.x_m, image.y_m, image.disc, image.cell);
     const std::uint32_t* const cell = cell_.data();
-    for (std::uint32_t i = discs.count(); i-- > 0;) {
-        put(discs.x_m[i], discs.y_m[i], {i, cell[i]});
-    }
+    for (std::uint32_t i = discs.count(); i-- > 0;) put(discs.x_m[i], discs.y_m[i], i, cell[i]);
 }
 
-// The first lanes of a run are always looked at, since whether a run is empty cannot be foreseen.
 template <typename Scalar>
 template <bool kEqualRadii>
-void CellGrid<Scalar>::search(Scalar reach_squared, std::vector<DiscPair>& pairs) const {
-    const Scalar *const x = x_m_.data(), *const y = y_m_.data(), *const radius = radius_m_.data();
-    const Placed* const placed = placed_.data();
-    const std::uint32_t* const first = first_.data();
-    const auto search_run = [&](std::uint32_t i, std::uint32_t j, std::uint32_t end) {
-        do {
-            std::uint32_t near = 0;
-            if constexpr (kEqualRadii) {
-                near = near_lanes(x + j, y + j, x[i], y[i], reach_squared);
-            } else {
-                near = overlapping_lanes(x + j, y + j, radius + j, x[i], y[i], radius[i]);
-            }
-            if (near != 0) [[unlikely]]
-                add_pairs(i, j, near, end, pairs);
-            j += kLanes;
-        } while (j < end);
-    };
-    for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
-        const std::uint32_t left = row * stride_ + 1;
-        const std::uint32_t end = first[left + axis_[0].cells];
-        for (std::uint32_t i = first[left]; i < end; ++i) {
-            const std::uint32_t* const here = first + placed[i].cell;
-            search_run(i, i + 1, here[2]);
-            search_run(i, here[stride_ - 1], here[stride_ + 2]);
+void CellGrid<Scalar>::search(Scalar reach_m, bool few, NearPairs& pairs) const {
+    const LaneKernels<Scalar>& kernels = lane_kernels<Scalar>(level_);
+    // In its own cell, the next one and three of the next row.
+    const std::size_t most_near_one = 5 * std::size_t{most_in_cell_};
+    const std::size_t least_room = most_near_one + 4 * kMostLanes;
+    SearchProgress progress;
+    for (;;) {
+        if (pairs.a.size() < progress.found + least_room) {
+            const std::size_t room = 2 * (progress.found + least_room) + disc_.size();
+            pairs.a.resize(room);
+            pairs.b.resize(room);
         }
-    }
-}
-
-// Lanes beyond the run's end are another run's to find.
-template <typename Scalar>
-void CellGrid<Scalar>::add_pairs(std::uint32_t i, std::uint32_t begin, std::uint32_t lanes,
-                                 std::uint32_t end, std::vector<DiscPair>& pairs) const {
-    for (; lanes != 0; lanes &= lanes - 1) {
-        const std::uint32_t j = begin + static_cast<std::uint32_t>(std::countr_zero(lanes));
-        if (j < end) pairs.push_back({placed_[i].disc, placed_[j].disc});
+        kernels.search(
+            {x_m_.data(), y_m_.data(), kEqualRadii ? nullptr : radius_m_.data(), disc_.data(),
+             cell_.data(), first_.data(), stride_, axis_[0].cells, axis_[1].cells, reach_m,
+             pairs.a.data(), pairs.b.data(), pairs.a.size(), most_near_one, few},
+            progress);
+        pairs.count = progress.found;
+        if (progress.row == axis_[1].cells) return;
     }
 }
 
@@ -221,7 +206,7 @@ void CellGrid<Scalar>::read_order(std::vector<std::uint32_t>& order) const {
     for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
         const std::uint32_t left = row * stride_ + 1;
         for (std::uint32_t i = first_[left]; i < first_[left + axis_[0].cells]; ++i) {
-            order.push_back(placed_[i].disc);
+            order.push_back(disc_[i]);
         }
     }
 }

@@ -1,6 +1,6 @@
-// Which discs overlap: a uniform grid whose cells are at least as wide as the largest disc, so that
-// only neighbouring cells need be looked at. Made anew for every look by a counting sort, after
-// which the discs of neighbouring cells of a row are one run of memory.
+// Which discs are near each other: a uniform grid whose cells are at least as wide as the largest
+// disc and the margin, so that only neighbouring cells need be looked at. Made anew for every look
+// by a counting sort, after which the discs of neighbouring cells of a row are one run of memory.
 //
 // A periodic box costs nothing in the search: what is near a side is placed a second time, as its
 // image beyond the opposite one.
@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "common/physics/lane_kernels.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
@@ -28,20 +29,24 @@ struct Discs {
     std::uint32_t count() const { return static_cast<std::uint32_t>(x_m.size()); }
 };
 
-struct DiscPair {
-    std::uint32_t a, b;
+struct NearPairs {
+    std::vector<std::uint32_t> a, b;  // with room for more
+    std::size_t count = 0;
 };
 
 template <typename Scalar>
 class CellGrid {
   public:
+    explicit CellGrid(SimdLevel level = best_simd_level()) : level_(level) {}
+
     // Chooses the cells by where most of the discs are. To be called before the first search, when
-    // the number of discs grows, or the largest of them; after that only the speed depends on it.
+    // the number of discs grows, or the box; after that only the speed depends on it.
     void fit(const Discs<Scalar>& discs, const std::optional<typename Model<Scalar>::Box>& box);
 
-    // Appends every pair whose distance is below the sum of its radii, in any order, but each once:
-    // with a box (then all places must be inside) the distance to the nearest image.
-    void find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs);
+    // Every pair whose distance is below the sum of its radii and `margin_m` >= 0, in any order,
+    // but each once: with a box (then all places must be inside, and no pair that near through two
+    // images) the distance to the nearest image, to round-off.
+    void find_near(const Discs<Scalar>& discs, Scalar margin_m, NearPairs& pairs);
 
     // The discs of the last search, neighbours near each other.
     void read_order(std::vector<std::uint32_t>& order) const;
@@ -56,17 +61,14 @@ class CellGrid {
 
         std::uint32_t cell_of(Scalar x_m) const;  // never decreases with x_m
     };
-    struct Placed {
-        std::uint32_t disc;
-        std::uint32_t cell;
-    };
     struct Image {
         Scalar x_m, y_m;
-        Placed placed;
+        std::uint32_t disc, cell;
     };
 
     void fit_axis(Axis& axis, std::span<const Scalar> x_m);
     void divide(Axis& axis, Scalar cell_m, std::uint32_t most_cells);
+    void lay_out(std::uint32_t discs, Scalar reach_m);
     void sort(const Discs<Scalar>& discs);
     void count_cells(const Discs<Scalar>& discs);
     // What only some scenes need is never inlined, so that a count of instructions shows it apart
@@ -75,18 +77,18 @@ class CellGrid {
     template <bool kEqualRadii>
     [[gnu::noinline]] void put_into_cells(const Discs<Scalar>& discs);
     template <bool kEqualRadii>
-    [[gnu::noinline]] void search(Scalar reach_squared, std::vector<DiscPair>& pairs) const;
-    void add_pairs(std::uint32_t i, std::uint32_t begin, std::uint32_t lanes, std::uint32_t end,
-                   std::vector<DiscPair>& pairs) const;
+    [[gnu::noinline]] void search(Scalar reach_m, bool few, NearPairs& pairs) const;
 
+    SimdLevel level_;
     Axis axis_[2];
     std::uint32_t stride_ = 3;  // cells in a row, with a column of images at each end
+    std::uint32_t most_in_cell_ = 0;
     bool periodic_ = false;
 
-    std::vector<std::uint32_t> cell_;   // by disc
-    std::vector<std::uint32_t> first_;  // by cell: where in the next four its discs begin
-    std::vector<Scalar> x_m_, y_m_, radius_m_;
-    std::vector<Placed> placed_;
+    std::vector<std::uint32_t> cell_;           // by disc
+    std::vector<std::uint32_t> first_;          // by cell: the first place of its discs
+    std::vector<Scalar> x_m_, y_m_, radius_m_;  // by place
+    std::vector<std::uint32_t> disc_;           // by place
     std::vector<Image> images_;
     std::vector<Scalar> sample_;
 };

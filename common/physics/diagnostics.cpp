@@ -41,6 +41,10 @@ Change energy_change(const Contact<Scalar>& c) {
             energy_j(mass_a, after_a) + energy_j(mass_b, after_b)};
 }
 
+// Where a value is less than this of the worst so far, round-off and all, it is not looked at
+// closely.
+constexpr double kSurelyLess = 1.0 - 1e-12;
+
 template <typename Scalar>
 double momentum_error(const Contact<Scalar>& c) {
     const double mass_a = static_cast<double>(c.mass_a_kg);
@@ -52,6 +56,21 @@ double momentum_error(const Contact<Scalar>& c) {
     const Vec2d after_b = mass_b * c.velocity_b_after_mps.template cast<double>();
     const double scale = before_a.norm() + before_b.norm();
     return scale > 0.0 ? ((after_a + after_b) - (before_a + before_b)).norm() / scale : 0.0;
+}
+
+// False only if momentum_error is not above `worst`, which is found without roots: the sum of two
+// lengths is not less than the root of the sum of their squares.
+template <typename Scalar>
+bool may_be_worse(const Contact<Scalar>& c, double worst) {
+    const double mass_a = static_cast<double>(c.mass_a_kg);
+    const double mass_b = static_cast<double>(c.mass_b_kg);
+    const Vec2d before_a = mass_a * c.velocity_a_before_mps.template cast<double>();
+    const Vec2d before_b = mass_b * c.velocity_b_before_mps.template cast<double>();
+    const Vec2d after_a = mass_a * c.velocity_a_after_mps.template cast<double>();
+    const Vec2d after_b = mass_b * c.velocity_b_after_mps.template cast<double>();
+    const double change = ((after_a + after_b) - (before_a + before_b)).squaredNorm();
+    const double scale = before_a.squaredNorm() + before_b.squaredNorm();
+    return !(change < kSurelyLess * worst * worst * scale);
 }
 
 // What contacts of one instant did to all their bodies together.
@@ -194,11 +213,13 @@ void account(const Contact<Scalar>& contact, CollisionAudit& audit) {
         return;
     }
     ++audit.ball_collisions;
-    if (energy.before > 0.0) {
-        audit.worst_energy_error = std::max(audit.worst_energy_error,
-                                            std::abs(energy.after - energy.before) / energy.before);
+    const double change = std::abs(energy.after - energy.before);
+    if (energy.before > 0.0 && change > kSurelyLess * audit.worst_energy_error * energy.before) {
+        audit.worst_energy_error = std::max(audit.worst_energy_error, change / energy.before);
     }
-    audit.worst_momentum_error = std::max(audit.worst_momentum_error, momentum_error(contact));
+    if (may_be_worse(contact, audit.worst_momentum_error)) {
+        audit.worst_momentum_error = std::max(audit.worst_momentum_error, momentum_error(contact));
+    }
 }
 
 template <typename Scalar>
@@ -252,15 +273,16 @@ double deepest_overlap(const Bodies<Scalar>& bodies, const Model<Scalar>& model)
     const auto periodic = in_double(model.periodic), walls = in_double(model.walls);
     const Discs<double> discs{crowd.x_m, crowd.y_m, crowd.radius_m, crowd.largest_radius_m};
     CellGrid<double> grid;
-    std::vector<DiscPair> pairs;
+    NearPairs near;
     grid.fit(discs, periodic);
-    grid.find_overlaps(discs, pairs);
+    grid.find_near(discs, 0.0, near);
     double deepest = 0.0;
-    for (const DiscPair& pair : pairs) {
-        if (crowd.is_immovable[pair.a] && crowd.is_immovable[pair.b]) continue;
-        const double radius_a = crowd.radius_m[pair.a], radius_b = crowd.radius_m[pair.b];
+    for (std::size_t k = 0; k < near.count; ++k) {
+        const std::uint32_t a = near.a[k], b = near.b[k];
+        if (crowd.is_immovable[a] && crowd.is_immovable[b]) continue;
+        const double radius_a = crowd.radius_m[a], radius_b = crowd.radius_m[b];
         const Vec2d line =
-            nearest_image<double>(crowd.position_m(pair.a) - crowd.position_m(pair.b), periodic);
+            nearest_image<double>(crowd.position_m(a) - crowd.position_m(b), periodic);
         const double overlap_m = radius_a + radius_b - line.norm();
         deepest = std::max(deepest, overlap_m / std::min(radius_a, radius_b));
     }

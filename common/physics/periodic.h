@@ -15,6 +15,7 @@ Vec2<Scalar> nearest_image(Vec2<Scalar> separation_m,
     if (!box) return separation_m;
     const Vec2<Scalar> extent = box->extent_m();
     for (int axis = 0; axis < 2; ++axis) {
+        if (std::abs(separation_m[axis]) < Scalar(0.49) * extent[axis]) continue;
         separation_m[axis] -= extent[axis] * std::round(separation_m[axis] / extent[axis]);
     }
     return separation_m;

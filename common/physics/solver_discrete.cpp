@@ -3,24 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "common/physics/boundary.h"
-#include "common/physics/cell_grid.h"
+#include "common/physics/centre_line.h"
 #include "common/physics/diagnostics.h"
+#include "common/physics/hit_order.h"
+#include "common/physics/near_list.h"
 #include "common/physics/periodic.h"
 
 namespace fts::physics {
 namespace {
 
-// Searches after which the cells are fitted anew and neighbours brought together in memory.
-constexpr std::uint32_t kSearchesPerOrder = 32;
+// Lists of near pairs after which the cells are fitted anew and neighbours brought together in
+// memory.
+constexpr std::uint32_t kListsPerOrder = 16;
+// How many hits ahead of its turn a hit's bodies are fetched.
+constexpr std::size_t kHitsAhead = 8;
 
 template <typename Scalar>
 class DiscreteSolver final : public Solver<Scalar> {
   public:
-    explicit DiscreteSolver(std::uint32_t substeps) : substeps_(substeps) {}
+    DiscreteSolver(std::uint32_t substeps, SimdLevel level)
+        : substeps_(substeps), kernels_(&lane_kernels<Scalar>(level)), near_(level) {}
 
     DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                               Record<Scalar>& record) override;
@@ -31,32 +39,30 @@ class DiscreteSolver final : public Solver<Scalar> {
     using Vec = Vec2<Scalar>;
     using Box = typename Model<Scalar>::Box;
     using Resolve = void (DiscreteSolver::*)(Scalar);
-
-    // From the second to the first; never of length 0.
-    struct Line {
-        Scalar x, y;
-        Scalar squared;
-        Scalar distance_m;  // of the centres; the line's length, unless they coincide
-    };
+    using Line = CentreLine<Scalar>;
 
     // What only some scenes need is never inlined, so that a count of instructions shows it apart
     // (scripts/feature-cost).
     void gather(const Bodies<Scalar>& bodies);
+    bool gather_radii(const Bodies<Scalar>& bodies);
     bool holds_just(const Bodies<Scalar>& bodies) const;
     void take_in_order_of_ids(const Bodies<Scalar>& bodies);
-    void advance(Scalar span_s);
-    [[gnu::noinline]] void advance_in_box(Scalar span_s);
+    Scalar advance(Scalar span_s);
+    [[gnu::noinline]] Scalar advance_in_box(Scalar span_s);
     void find_pairs();
     void bring_neighbours_together();
     Resolve resolve_for_model() const;
     template <bool kEqualRadii, bool kEqualMasses, bool kPeriodic>
     void resolve(Scalar time_s);
     template <bool kEqualRadii, bool kEqualMasses, bool kPeriodic>
-    void resolve_pair(std::uint32_t a, std::uint32_t b, Scalar time_s);
+    void resolve_pair(const SlotPair& hit, Scalar time_s);
+    void fetch(const SlotPair& hit) const;
     template <bool kPeriodic>
     Line line_of_centres(std::uint32_t a, std::uint32_t b) const;
-    void record_collision(std::uint32_t a, std::uint32_t b, const Line& line, Scalar strength,
-                          Scalar overlap_m, Scalar time_s);
+    template <bool kEqualMasses>
+    void record_collision(const SlotPair& hit, const Line& line, Scalar strength, Scalar overlap_m,
+                          Scalar time_s);
+    std::span<const std::uint32_t> outside(const Range2<Scalar>& inside);
     void wrap(std::uint32_t i);
     template <bool kEqualRadii>
     [[gnu::noinline]] void reflect_from_walls(Scalar time_s);
@@ -72,9 +78,10 @@ class DiscreteSolver final : public Solver<Scalar> {
     Discs<Scalar> discs() const { return {x_m_, y_m_, radius_m_, largest_radius_m_}; }
 
     std::uint32_t substeps_;
+    const LaneKernels<Scalar>* kernels_;
     bool forgotten_ = true;
     bool ahead_ = false;  // of the bodies
-    std::uint32_t searches_until_order_ = 0;
+    std::uint32_t lists_until_order_ = 0;
 
     Bodies<Scalar>* bodies_ = nullptr;
     const Model<Scalar>* model_ = nullptr;
@@ -89,13 +96,15 @@ class DiscreteSolver final : public Solver<Scalar> {
     Scalar largest_radius_m_ = Scalar(0);
     std::vector<std::uint32_t> place_;  // by slot
 
-    CellGrid<Scalar> grid_;
-    std::vector<DiscPair> pairs_;      // of places
-    std::vector<std::uint64_t> keys_;  // of slots: the lower one, then the other
+    NearList<Scalar> near_;
+    std::vector<DiscPair> pairs_;  // of places
+    std::vector<SlotPair> hits_;
+    HitOrder hit_order_;
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> old_slot_;
     std::vector<Scalar> old_;
-    std::vector<std::uint32_t> fallen_;  // slots
+    std::vector<std::uint32_t> outside_;
+    std::vector<std::uint32_t> slots_;  // of those at the boundary
 };
 
 template <typename Scalar>
@@ -111,9 +120,10 @@ DriftReport<Scalar> DiscreteSolver<Scalar>::drift(Bodies<Scalar>& bodies,
     const Resolve resolve_pairs = resolve_for_model();
     for (std::uint32_t k = 1; k <= substeps_; ++k) {
         const Scalar time_s = k == substeps_ ? span_s : step_s * static_cast<Scalar>(k);
-        model.periodic ? advance_in_box(step_s) : advance(step_s);
+        near_.all_moved(model.periodic ? advance_in_box(step_s) : advance(step_s));
         find_pairs();
         (this->*resolve_pairs)(time_s);
+        if (lists_until_order_ == 0) bring_neighbours_together();
         if (model.walls) {
             model.equal_radii ? reflect_from_walls<true>(time_s)
                               : reflect_from_walls<false>(time_s);
@@ -134,35 +144,51 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
     for (std::vector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
         values->resize(bodies_count);
     }
+    bool same_places = same_bodies;
     for (std::uint32_t i = 0; i < bodies_count; ++i) {
         const Vec &position = bodies.position_m[slot_[i]],
                   &velocity = bodies.velocity_mps[slot_[i]];
+        same_places &= x_m_[i] == position.x() && y_m_[i] == position.y();
         x_m_[i] = position.x();
         y_m_[i] = position.y();
         vx_mps_[i] = velocity.x();
         vy_mps_[i] = velocity.y();
     }
-    radius_m_.clear();
     inverse_mass_per_kg_.clear();
-    const Scalar largest_before = largest_radius_m_;
-    largest_radius_m_ = slot_.empty() ? Scalar(0) : bodies.radius_m[slot_.front()];
-    if (!model_->equal_radii) {
-        for (const std::uint32_t slot : slot_) radius_m_.push_back(bodies.radius_m[slot]);
-        for (const Scalar radius : radius_m_) {
-            largest_radius_m_ = std::max(largest_radius_m_, radius);
-        }
-    }
+    const bool same_radii = gather_radii(bodies);
     if (!model_->equal_masses) {
         for (const std::uint32_t slot : slot_) {
             inverse_mass_per_kg_.push_back(Scalar(1) / bodies.mass_kg[slot]);
         }
     }
-    if (!same_bodies || largest_radius_m_ != largest_before) {
-        grid_.fit(discs(), model_->periodic);
-        searches_until_order_ = 1;
+    if (!same_bodies || !same_radii) {
+        near_.fit(discs(), model_->periodic);
+        lists_until_order_ = 1;
     }
+    if (!same_places) near_.forget();
     forgotten_ = false;
     ahead_ = false;
+}
+
+// Gives whether they are what they were.
+template <typename Scalar>
+bool DiscreteSolver<Scalar>::gather_radii(const Bodies<Scalar>& bodies) {
+    const bool were_equal = radius_m_.empty();
+    const Scalar largest_before = largest_radius_m_;
+    largest_radius_m_ = slot_.empty() ? Scalar(0) : bodies.radius_m[slot_.front()];
+    if (model_->equal_radii) {
+        radius_m_.clear();
+        return were_equal && largest_radius_m_ == largest_before;
+    }
+    bool same = radius_m_.size() == slot_.size();
+    radius_m_.resize(slot_.size());
+    for (std::uint32_t i = 0; i < count(); ++i) {
+        const Scalar radius = bodies.radius_m[slot_[i]];
+        same &= radius_m_[i] == radius;
+        radius_m_[i] = radius;
+        largest_radius_m_ = std::max(largest_radius_m_, radius);
+    }
+    return same;
 }
 
 // What was changed is most often velocities alone; then the order in memory is still good.
@@ -195,24 +221,29 @@ void DiscreteSolver<Scalar>::synchronise(Bodies<Scalar>& bodies) {
     ahead_ = false;
 }
 
+// Gives how far the fastest has gone.
 template <typename Scalar>
-void DiscreteSolver<Scalar>::advance(Scalar span_s) {
-    for (std::uint32_t i = 0; i < count(); ++i) {
-        x_m_[i] += vx_mps_[i] * span_s;
-        y_m_[i] += vy_mps_[i] * span_s;
-    }
+Scalar DiscreteSolver<Scalar>::advance(Scalar span_s) {
+    return span_s * std::sqrt(kernels_->advance(x_m_.data(), y_m_.data(), vx_mps_.data(),
+                                                vy_mps_.data(), span_s, count()));
 }
 
 template <typename Scalar>
-void DiscreteSolver<Scalar>::advance_in_box(Scalar span_s) {
+Scalar DiscreteSolver<Scalar>::advance_in_box(Scalar span_s) {
+    const Scalar farthest_m = advance(span_s);
     const Box box = *model_->periodic;
-    for (std::uint32_t i = 0; i < count(); ++i) {
-        x_m_[i] += vx_mps_[i] * span_s;
-        y_m_[i] += vy_mps_[i] * span_s;
-        const bool inside = x_m_[i] >= box.min_m.x() && x_m_[i] < box.max_m.x() &&
-                            y_m_[i] >= box.min_m.y() && y_m_[i] < box.max_m.y();
-        if (!inside) wrap(i);
-    }
+    constexpr Scalar kDown = -std::numeric_limits<Scalar>::infinity();
+    const Range2<Scalar> inside = {box.min_m.x(), std::nextafter(box.max_m.x(), kDown),
+                                   box.min_m.y(), std::nextafter(box.max_m.y(), kDown)};
+    for (const std::uint32_t i : outside(inside)) wrap(i);
+    return farthest_m;
+}
+
+template <typename Scalar>
+std::span<const std::uint32_t> DiscreteSolver<Scalar>::outside(const Range2<Scalar>& inside) {
+    if (outside_.size() < count()) outside_.resize(count());
+    return {outside_.data(),
+            kernels_->outside(x_m_.data(), y_m_.data(), count(), inside, outside_.data())};
 }
 
 template <typename Scalar>
@@ -226,23 +257,19 @@ void DiscreteSolver<Scalar>::wrap(std::uint32_t i) {
 template <typename Scalar>
 void DiscreteSolver<Scalar>::find_pairs() {
     pairs_.clear();
-    grid_.find_overlaps(discs(), pairs_);
-    keys_.clear();
-    for (const DiscPair& pair : pairs_) {
-        const auto [low, high] = std::minmax(slot_[pair.a], slot_[pair.b]);
-        keys_.push_back(std::uint64_t{low} << 32 | high);
+    const bool listed = near_.find_overlaps(discs(), pairs_);
+    hits_.clear();
+    for (const auto [a, b] : pairs_) {
+        hits_.push_back(slot_[a] < slot_[b] ? SlotPair{slot_[a], slot_[b], a, b}
+                                            : SlotPair{slot_[b], slot_[a], b, a});
     }
-    std::sort(keys_.begin(), keys_.end());
-    if (--searches_until_order_ == 0) {
-        bring_neighbours_together();
-        grid_.fit(discs(), model_->periodic);
-        searches_until_order_ = kSearchesPerOrder;
-    }
+    hit_order_.sort(hits_, static_cast<std::uint32_t>(place_.size()));
+    if (listed) --lists_until_order_;
 }
 
 template <typename Scalar>
 void DiscreteSolver<Scalar>::bring_neighbours_together() {
-    grid_.read_order(order_);
+    near_.read_order(order_);
     for (std::vector<Scalar>* values :
          {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
         if (values->empty()) continue;
@@ -256,6 +283,8 @@ void DiscreteSolver<Scalar>::bring_neighbours_together() {
         place_[old_slot_[from]] = count();
         slot_.push_back(old_slot_[from]);
     }
+    near_.fit(discs(), model_->periodic);
+    lists_until_order_ = kListsPerOrder;
 }
 
 template <typename Scalar>
@@ -272,15 +301,29 @@ auto DiscreteSolver<Scalar>::resolve_for_model() const -> Resolve {
 template <typename Scalar>
 template <bool kEqualRadii, bool kEqualMasses, bool kPeriodic>
 void DiscreteSolver<Scalar>::resolve(Scalar time_s) {
-    for (const std::uint64_t key : keys_) {
-        const std::uint32_t a = place_[key >> 32], b = place_[key & 0xffffffffU];
-        resolve_pair<kEqualRadii, kEqualMasses, kPeriodic>(a, b, time_s);
+    const std::size_t hits = hits_.size();
+    for (std::size_t k = 0; k < hits; ++k) {
+        if (k + kHitsAhead < hits) fetch(hits_[k + kHitsAhead]);
+        resolve_pair<kEqualRadii, kEqualMasses, kPeriodic>(hits_[k], time_s);
     }
+}
+
+// Who hits whom is scattered over the memory of a large crowd.
+template <typename Scalar>
+void DiscreteSolver<Scalar>::fetch(const SlotPair& hit) const {
+    for (const std::uint32_t i : {hit.place_a, hit.place_b}) {
+        for (const std::vector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
+            __builtin_prefetch(values->data() + i);
+        }
+    }
+    __builtin_prefetch(bodies_->generation.data() + hit.slot_a);
+    __builtin_prefetch(bodies_->generation.data() + hit.slot_b);
 }
 
 template <typename Scalar>
 template <bool kEqualRadii, bool kEqualMasses, bool kPeriodic>
-void DiscreteSolver<Scalar>::resolve_pair(std::uint32_t a, std::uint32_t b, Scalar time_s) {
+void DiscreteSolver<Scalar>::resolve_pair(const SlotPair& hit, Scalar time_s) {
+    const std::uint32_t a = hit.place_a, b = hit.place_b;
     Scalar share_a = Scalar(0.5), share_b = Scalar(0.5);
     if constexpr (!kEqualMasses) {
         const Scalar both = inverse_mass_per_kg_[a] + inverse_mass_per_kg_[b];
@@ -295,7 +338,7 @@ void DiscreteSolver<Scalar>::resolve_pair(std::uint32_t a, std::uint32_t b, Scal
     const Scalar rate = line.x * (vx_mps_[a] - vx_mps_[b]) + line.y * (vy_mps_[a] - vy_mps_[b]);
     if (rate < Scalar(0)) {
         const Scalar strength = -(Scalar(1) + model_->restitution) * (rate / line.squared);
-        record_collision(a, b, line, strength, overlap, time_s);
+        record_collision<kEqualMasses>(hit, line, strength, overlap, time_s);
         Contact<Scalar>& contact = record_->contacts.back();
         vx_mps_[a] += strength * share_a * line.x;
         vy_mps_[a] += strength * share_a * line.y;
@@ -307,58 +350,49 @@ void DiscreteSolver<Scalar>::resolve_pair(std::uint32_t a, std::uint32_t b, Scal
         ++events_;
     }
     if (!(overlap > Scalar(0))) return;
-    const Scalar way = overlap / std::sqrt(line.squared);
+    const Scalar way = overlap / line.length;
     x_m_[a] += way * share_a * line.x;
     y_m_[a] += way * share_a * line.y;
     x_m_[b] -= way * share_b * line.x;
     y_m_[b] -= way * share_b * line.y;
+    near_.moved(a, overlap * share_a);
+    near_.moved(b, overlap * share_b);
     if constexpr (kPeriodic) {
         wrap(a);
         wrap(b);
     }
 }
 
-// Below the least distance whose square keeps all its digits, centres coincide.
 template <typename Scalar>
 template <bool kPeriodic>
 auto DiscreteSolver<Scalar>::line_of_centres(std::uint32_t a, std::uint32_t b) const -> Line {
-    constexpr Scalar kCoincident =
-        std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
-    Scalar x = x_m_[a] - x_m_[b], y = y_m_[a] - y_m_[b];
+    Vec separation_m(x_m_[a] - x_m_[b], y_m_[a] - y_m_[b]);
     if constexpr (kPeriodic) {
-        const Vec nearest = nearest_image<Scalar>({x, y}, model_->periodic);
-        x = nearest.x();
-        y = nearest.y();
+        separation_m = nearest_image<Scalar>(separation_m, model_->periodic);
     }
-    const Scalar squared = x * x + y * y;
-    if (squared > kCoincident) return {x, y, squared, std::sqrt(squared)};
-    x = vx_mps_[b] - vx_mps_[a];
-    y = vy_mps_[b] - vy_mps_[a];
-    const Scalar larger = std::max(std::abs(x), std::abs(y));
-    if (!(larger > Scalar(0))) return {Scalar(1), Scalar(0), Scalar(1), Scalar(0)};
-    x /= larger;
-    y /= larger;
-    return {x, y, x * x + y * y, Scalar(0)};
+    return centre_line<Scalar>(separation_m, {vx_mps_[a], vy_mps_[a]}, {vx_mps_[b], vy_mps_[b]});
 }
 
 // With the velocities before; `strength` times the line is what the velocities come apart by.
 template <typename Scalar>
-void DiscreteSolver<Scalar>::record_collision(std::uint32_t a, std::uint32_t b, const Line& line,
+template <bool kEqualMasses>
+void DiscreteSolver<Scalar>::record_collision(const SlotPair& hit, const Line& line,
                                               Scalar strength, Scalar overlap_m, Scalar time_s) {
     const Bodies<Scalar>& all = *bodies_;
-    const Scalar mass_a = all.mass_kg[slot_[a]], mass_b = all.mass_kg[slot_[b]];
+    const std::uint32_t a = hit.place_a, b = hit.place_b;
+    const Scalar mass_a = kEqualMasses ? all.mass_kg[slot_.front()] : all.mass_kg[hit.slot_a];
+    const Scalar mass_b = kEqualMasses ? mass_a : all.mass_kg[hit.slot_b];
     const Scalar reduced_kg = Scalar(1) / (Scalar(1) / mass_a + Scalar(1) / mass_b);
-    const Scalar length = std::sqrt(line.squared);
-    const Vec normal(line.x / length, line.y / length);
+    const Vec normal(line.x / line.length, line.y / line.length);
     const Vec position_a(x_m_[a], y_m_[a]);
     const Scalar radius_a = radius_of(a);
     Contact<Scalar>& contact = record_->contacts.emplace_back();
-    contact.a = all.id_of(slot_[a]);
-    contact.b = all.id_of(slot_[b]);
+    contact.a = all.id_of(hit.slot_a);
+    contact.b = all.id_of(hit.slot_b);
     contact.time_s = time_s;
     contact.point_m = position_a - radius_a * normal;
     contact.normal = normal;
-    contact.impulse_ns = strength * length * reduced_kg;
+    contact.impulse_ns = strength * line.length * reduced_kg;
     contact.position_a_m = position_a;
     contact.position_b_m = position_a - line.distance_m * normal;
     contact.velocity_a_before_mps = {vx_mps_[a], vy_mps_[a]};
@@ -371,14 +405,16 @@ void DiscreteSolver<Scalar>::record_collision(std::uint32_t a, std::uint32_t b, 
 template <typename Scalar>
 template <bool kEqualRadii>
 void DiscreteSolver<Scalar>::reflect_from_walls(Scalar time_s) {
-    Box room = room_for(*model_->walls, largest_radius_m_);
-    keys_.clear();
-    for (std::uint32_t i = 0; i < count(); ++i) {
-        if constexpr (!kEqualRadii) room = room_for(*model_->walls, radius_m_[i]);
-        if (!is_within<Scalar>(room, x_m_[i], y_m_[i])) keys_.push_back(slot_[i]);
+    const Box room = room_for(*model_->walls, largest_radius_m_);
+    slots_.clear();
+    for (const std::uint32_t i :
+         outside({room.min_m.x(), room.max_m.x(), room.min_m.y(), room.max_m.y()})) {
+        const Scalar radius = kEqualRadii ? largest_radius_m_ : radius_m_[i];
+        const Box own = room_for(*model_->walls, radius);
+        if (!is_within<Scalar>(own, x_m_[i], y_m_[i])) slots_.push_back(slot_[i]);
     }
-    std::sort(keys_.begin(), keys_.end());
-    for (const std::uint64_t slot : keys_) {
+    std::sort(slots_.begin(), slots_.end());
+    for (const std::uint32_t slot : slots_) {
         const std::uint32_t i = place_[slot];
         reflect(i, room_for(*model_->walls, radius_of(i)), time_s);
     }
@@ -391,6 +427,8 @@ void DiscreteSolver<Scalar>::reflect(std::uint32_t i, const Box& room, Scalar ti
     WallHitter<Scalar> body{
         bodies_->id_of(slot_[i]), {x_m_[i], y_m_[i]}, {vx_mps_[i], vy_mps_[i]}, radius_of(i), mass};
     events_ += bounce(body, room, model_->restitution, time_s, *record_);
+    near_.moved(i,
+                std::abs(body.position_m.x() - x_m_[i]) + std::abs(body.position_m.y() - y_m_[i]));
     x_m_[i] = body.position_m.x();
     y_m_[i] = body.position_m.y();
     vx_mps_[i] = body.velocity_mps.x();
@@ -400,12 +438,12 @@ void DiscreteSolver<Scalar>::reflect(std::uint32_t i, const Box& room, Scalar ti
 template <typename Scalar>
 template <typename Shape>
 void DiscreteSolver<Scalar>::drop_who_is_off(const Shape& shape, Scalar time_s) {
-    fallen_.clear();
+    slots_.clear();
     for (std::uint32_t i = 0; i < count(); ++i) {
-        if (is_off(shape, x_m_[i], y_m_[i])) fallen_.push_back(slot_[i]);
+        if (is_off(shape, x_m_[i], y_m_[i])) slots_.push_back(slot_[i]);
     }
-    std::sort(fallen_.begin(), fallen_.end());
-    for (const std::uint32_t slot : fallen_) drop(slot, time_s);
+    std::sort(slots_.begin(), slots_.end());
+    for (const std::uint32_t slot : slots_) drop(slot, time_s);
 }
 
 template <typename Scalar>
@@ -414,6 +452,7 @@ void DiscreteSolver<Scalar>::drop(std::uint32_t slot, Scalar time_s) {
     record_->falls.push_back(
         {bodies_->id_of(slot), time_s, {x_m_[i], y_m_[i]}, {vx_mps_[i], vy_mps_[i]}});
     bodies_->remove(slot);
+    near_.forget();
     ++events_;
     place_[slot_.back()] = i;
     const auto take_from_end = [i](auto& values) {
@@ -431,11 +470,11 @@ void DiscreteSolver<Scalar>::drop(std::uint32_t slot, Scalar time_s) {
 }  // namespace
 
 template <typename Scalar>
-std::unique_ptr<Solver<Scalar>> make_discrete_solver(std::uint32_t substeps) {
-    return std::make_unique<DiscreteSolver<Scalar>>(substeps);
+std::unique_ptr<Solver<Scalar>> make_discrete_solver(std::uint32_t substeps, SimdLevel level) {
+    return std::make_unique<DiscreteSolver<Scalar>>(substeps, level);
 }
 
-template std::unique_ptr<Solver<double>> make_discrete_solver(std::uint32_t);
-template std::unique_ptr<Solver<float>> make_discrete_solver(std::uint32_t);
+template std::unique_ptr<Solver<double>> make_discrete_solver(std::uint32_t, SimdLevel);
+template std::unique_ptr<Solver<float>> make_discrete_solver(std::uint32_t, SimdLevel);
 
 }  // namespace fts::physics

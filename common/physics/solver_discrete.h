@@ -13,7 +13,8 @@
 // A pair whose centres coincide has no line: it collides as if it had come together head-on along
 // its relative velocity, and at rest is parted along x, the lower index towards +x.
 //
-// The outcome depends on the state alone, not on how pairs are found. One pass over the pairs a
+// The outcome depends on the state alone, not on how pairs are found nor on the vector instructions
+// (a level that is supported). One pass over the pairs a
 // substep, so that the work is bounded and a drift never overruns; in a dense crowd some overlap is
 // left for the next. The largest ball sets the size of the grid's cells, so that a scene of very
 // unequal radii is slow.
@@ -26,11 +27,13 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/physics/simd_level.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
 
 template <typename Scalar>
-std::unique_ptr<Solver<Scalar>> make_discrete_solver(std::uint32_t substeps);
+std::unique_ptr<Solver<Scalar>> make_discrete_solver(std::uint32_t substeps,
+                                                     SimdLevel level = best_simd_level());
 
 }  // namespace fts::physics

@@ -1,0 +1,244 @@
+// What the discrete solver finds fast is what looking at every pair finds, at every width of vector
+// instructions that this processor has.
+#include "common/physics/near_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/physics/hit_order.h"
+#include "common/physics/periodic.h"
+#include "common/physics/solver_discrete.h"
+#include "tests/physics/scenes.h"
+
+namespace fts::physics {
+namespace {
+
+constexpr double kTickS = 1.0 / 60.0;
+
+std::vector<SimdLevel> levels_of_this_processor() {
+    std::vector<SimdLevel> levels;
+    for (const SimdLevel level :
+         {SimdLevel::kPlain, SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+        if (is_supported(level)) levels.push_back(level);
+    }
+    return levels;
+}
+
+struct Kind {
+    bool periodic, equal_radii, equal_masses;
+};
+constexpr Kind kKinds[] = {{false, true, true}, {false, false, false}, {false, true, false},
+                           {true, true, true},  {true, false, true},   {true, false, false}};
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+template <typename Scalar>
+struct Crowd {
+    std::vector<Scalar> x_m, y_m, radius_m;
+    Scalar largest_radius_m = Scalar(0);
+
+    Discs<Scalar> discs() const { return {x_m, y_m, radius_m, largest_radius_m}; }
+};
+
+template <typename Scalar>
+Crowd<Scalar> crowd_of(Dice& dice, std::size_t count, double half_width_m, bool equal_radii) {
+    Crowd<Scalar> crowd;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2<Scalar> place_m = dice.in_box(half_width_m).cast<Scalar>();
+        crowd.x_m.push_back(place_m.x());
+        crowd.y_m.push_back(place_m.y());
+        if (!equal_radii) crowd.radius_m.push_back(static_cast<Scalar>(dice.between(0.1, 0.5)));
+    }
+    crowd.largest_radius_m =
+        equal_radii ? Scalar(0.5) : *std::max_element(crowd.radius_m.begin(), crowd.radius_m.end());
+    return crowd;
+}
+
+template <typename Scalar>
+Pairs pairs_by_looking_at_all(const Crowd<Scalar>& crowd,
+                              const std::optional<typename Model<Scalar>::Box>& box) {
+    Pairs pairs;
+    const auto radius_of = [&](std::uint32_t i) {
+        return crowd.radius_m.empty() ? crowd.largest_radius_m : crowd.radius_m[i];
+    };
+    const auto count = static_cast<std::uint32_t>(crowd.x_m.size());
+    for (std::uint32_t a = 0; a < count; ++a) {
+        for (std::uint32_t b = a + 1; b < count; ++b) {
+            const Vec2<Scalar> line = nearest_image<Scalar>(
+                {crowd.x_m[a] - crowd.x_m[b], crowd.y_m[a] - crowd.y_m[b]}, box);
+            const Scalar reach = radius_of(a) + radius_of(b);
+            if (line.x() * line.x() + line.y() * line.y() < reach * reach) pairs.emplace_back(a, b);
+        }
+    }
+    return pairs;
+}
+
+Pairs in_order(const std::vector<DiscPair>& found) {
+    Pairs pairs;
+    for (const auto [a, b] : found) pairs.emplace_back(std::min(a, b), std::max(a, b));
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+template <typename Scalar>
+class NearLists : public testing::Test {};
+using Scalars = testing::Types<double, float>;
+TYPED_TEST_SUITE(NearLists, Scalars);
+
+// Most looks are small steps, some are leaps, and single discs are moved by other hands.
+template <typename Scalar>
+void expect_what_looking_at_all_finds(SimdLevel level, const Kind& kind, std::uint64_t seed) {
+    Dice dice(seed);
+    const double half_width_m = dice.between(3.0, 12.0);
+    Crowd<Scalar> crowd =
+        crowd_of<Scalar>(dice, 20 + dice.below(120), half_width_m, kind.equal_radii);
+    std::optional<typename Model<Scalar>::Box> box;
+    const Vec2<Scalar> corner = Vec2<Scalar>::Constant(static_cast<Scalar>(half_width_m));
+    if (kind.periodic) box = {-corner, corner};
+    NearList<Scalar> near(level);
+    near.fit(crowd.discs(), box);
+    std::vector<DiscPair> found;
+    std::size_t overlaps = 0;
+    int lists = 0;
+    constexpr int kLooks = 60;
+    for (int look = 0; look < kLooks; ++look) {
+        const double step_m = look % 20 == 19 ? 2.0 : dice.between(0.01, 0.03);
+        const auto displace = [&](std::size_t i, const Vec2d& by_m) {
+            Vec2<Scalar> place_m(crowd.x_m[i] + static_cast<Scalar>(by_m.x()),
+                                 crowd.y_m[i] + static_cast<Scalar>(by_m.y()));
+            if (box) place_m = wrapped<Scalar>(place_m, *box);
+            crowd.x_m[i] = place_m.x();
+            crowd.y_m[i] = place_m.y();
+        };
+        for (std::size_t i = 0; i < crowd.x_m.size(); ++i) displace(i, dice.in_box(step_m));
+        near.all_moved(static_cast<Scalar>(step_m * std::sqrt(2.0)));
+        found.clear();
+        lists += near.find_overlaps(crowd.discs(), found) ? 1 : 0;
+        ASSERT_EQ(in_order(found), pairs_by_looking_at_all(crowd, box)) << "look " << look;
+        overlaps += found.size();
+        for (int k = 0; k < 3; ++k) {
+            const auto disc = static_cast<std::uint32_t>(dice.below(crowd.x_m.size()));
+            displace(disc, dice.in_box(0.05));
+            near.moved(disc, Scalar(0.08));
+        }
+    }
+    EXPECT_GT(overlaps, 30U);
+    EXPECT_LT(lists, kLooks) << "a list holds for more than a look";
+}
+
+TYPED_TEST(NearLists, find_what_looking_at_every_pair_finds) {
+    for (const SimdLevel level : levels_of_this_processor()) {
+        for (const Kind& kind : kKinds) {
+            for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+                SCOPED_TRACE(testing::Message() << "level " << static_cast<int>(level) << " seed "
+                                                << seed << " periodic " << kind.periodic);
+                expect_what_looking_at_all_finds<TypeParam>(level, kind, seed);
+                if (testing::Test::HasFailure()) return;
+            }
+        }
+    }
+}
+
+// So many in one cell that a run is longer than any vector, and pairs more than discs.
+TYPED_TEST(NearLists, find_every_pair_of_a_heap) {
+    for (const SimdLevel level : levels_of_this_processor()) {
+        Dice dice(5);
+        const auto crowd = crowd_of<TypeParam>(dice, 120, 0.2, true);
+        NearList<TypeParam> near(level);
+        near.fit(crowd.discs(), std::nullopt);
+        near.all_moved(TypeParam(0));
+        std::vector<DiscPair> found;
+        near.find_overlaps(crowd.discs(), found);
+        EXPECT_EQ(found.size(), 120U * 119U / 2U);
+        EXPECT_EQ(in_order(found), pairs_by_looking_at_all(crowd, std::nullopt));
+    }
+}
+
+template <typename Scalar>
+std::vector<Scalar> state_after_a_life(SimdLevel level, const Kind& kind, std::uint64_t seed) {
+    Dice dice(seed);
+    Bodies<Scalar> bodies;
+    const std::size_t count = 60 + dice.below(240);
+    const double half_width_m = dice.between(10.0, 16.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        bodies.add(dice.in_box(half_width_m - 0.5).cast<Scalar>(),
+                   dice.in_box(i == 0 ? 100.0 : 3.0).cast<Scalar>(),
+                   static_cast<Scalar>(kind.equal_radii ? 0.4 : dice.between(0.1, 0.5)),
+                   static_cast<Scalar>(kind.equal_masses ? 1.5 : dice.between(0.5, 2.0)));
+    }
+    Model<Scalar> model;
+    model.equal_radii = kind.equal_radii;
+    model.equal_masses = kind.equal_masses;
+    const Vec2<Scalar> corner = Vec2<Scalar>::Constant(static_cast<Scalar>(half_width_m));
+    (kind.periodic ? model.periodic : model.walls) = typename Model<Scalar>::Box{-corner, corner};
+    const auto solver = make_discrete_solver<Scalar>(2, level);
+    Record<Scalar> record;
+    for (int tick = 0; tick < 200; ++tick) {
+        solver->drift(bodies, model, static_cast<Scalar>(kTickS), record);
+    }
+    solver->synchronise(bodies);
+    EXPECT_GT(record.audit.ball_collisions, 100U);
+    std::vector<Scalar> state;
+    for (const BodyId id : bodies.ids) {
+        const auto &place_m = bodies.position_m[id.index], &v_mps = bodies.velocity_mps[id.index];
+        state.insert(state.end(), {place_m.x(), place_m.y(), v_mps.x(), v_mps.y()});
+    }
+    for (const Contact<Scalar>& contact : record.contacts) state.push_back(contact.impulse_ns);
+    return state;
+}
+
+TYPED_TEST(NearLists, give_the_discrete_solver_the_same_bits_at_every_level) {
+    for (const Kind& kind : kKinds) {
+        for (std::uint64_t seed = 11; seed <= 13; ++seed) {
+            SCOPED_TRACE(seed);
+            const auto plain = state_after_a_life<TypeParam>(SimdLevel::kPlain, kind, seed);
+            for (const SimdLevel level : levels_of_this_processor()) {
+                ASSERT_EQ(state_after_a_life<TypeParam>(level, kind, seed), plain)
+                    << "level " << static_cast<int>(level);
+            }
+        }
+    }
+}
+
+TEST(SimdLevel, best_is_supported_and_so_is_what_is_below_it) {
+    EXPECT_TRUE(is_supported(best_simd_level()));
+    EXPECT_TRUE(is_supported(SimdLevel::kPlain));
+    const auto levels = levels_of_this_processor();
+    EXPECT_EQ(levels.back(), best_simd_level());
+    EXPECT_EQ(levels.size(), static_cast<std::size_t>(levels.back()) + 1);
+}
+
+TEST(HitOrder, is_by_the_lower_slot_then_the_other_and_each_pair_once) {
+    for (const std::uint32_t slots : {1U, 2U, 3U, 50U, 1000U, 4096U, 1'000'000U}) {
+        for (const std::size_t pairs : {0U, 1U, 5U, 100U, 5000U}) {
+            SCOPED_TRACE(testing::Message() << slots << " slots, " << pairs << " pairs");
+            Dice dice(slots + pairs);
+            std::vector<SlotPair> hits;
+            Pairs expected;
+            for (std::size_t k = 0; k < pairs; ++k) {
+                const auto a = static_cast<std::uint32_t>(dice.below(slots));
+                const auto b = static_cast<std::uint32_t>(dice.below(slots));
+                hits.push_back({a, b, b + 7, a + 9});
+                expected.emplace_back(a, b);
+            }
+            std::sort(expected.begin(), expected.end());
+            expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+            HitOrder().sort(hits, slots);
+            ASSERT_EQ(hits.size(), expected.size());
+            for (std::size_t k = 0; k < hits.size(); ++k) {
+                ASSERT_EQ(std::pair(hits[k].slot_a, hits[k].slot_b), expected[k]);
+                ASSERT_EQ(hits[k].place_a, hits[k].slot_b + 7);
+                ASSERT_EQ(hits[k].place_b, hits[k].slot_a + 9);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace fts::physics
