@@ -147,13 +147,13 @@ void CellGrid<Scalar>::sort(const Discs<Scalar>& discs) {
         first = total += first;
     }
 
-    x_m_.resize(total + kMostLanes);
-    y_m_.resize(total + kMostLanes);
-    disc_.resize(total + kMostLanes);
+    x_m_.resize(total + kWidestLanes);
+    y_m_.resize(total + kWidestLanes);
+    disc_.resize(total + kWidestLanes);
     if (discs.radius_m.empty()) {
         put_into_cells<true>(discs);
     } else {
-        radius_m_.resize(total + kMostLanes);
+        radius_m_.resize(total + kWidestLanes);
         put_into_cells<false>(discs);
     }
 }
@@ -179,10 +179,10 @@ void CellGrid<Scalar>::put_into_cells(const Discs<Scalar>& discs) {
 template <typename Scalar>
 template <bool kEqualRadii>
 void CellGrid<Scalar>::search(Scalar reach_m, bool few, NearPairs& pairs) const {
-    const LaneKernels<Scalar>& kernels = lane_kernels<Scalar>(level_);
+    const CrowdKernels<Scalar>& kernels = crowd_kernels<Scalar>(level_);
     // In its own cell, the next one and three of the next row.
     const std::size_t most_near_one = 5 * std::size_t{most_in_cell_};
-    const std::size_t least_room = most_near_one + 4 * kMostLanes;
+    const std::size_t least_room = most_near_one + 4 * kWidestLanes;
     SearchProgress progress;
     for (;;) {
         if (pairs.a.size() < progress.found + least_room) {

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "common/physics/lane_kernels.h"
+#include "common/physics/crowd_kernels.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {

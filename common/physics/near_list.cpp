@@ -14,13 +14,13 @@ constexpr double kLooks = 6.0;
 // A wider margin, in units of the largest disc's reach, has more pairs than it saves lists.
 constexpr double kWidestMargin = 0.8;
 // In units of the last place of the largest coordinate.
-constexpr double kSlop = 16.0;
+constexpr double kSlopUlps = 16.0;
 
 }  // namespace
 
 template <typename Scalar>
 NearList<Scalar>::NearList(SimdLevel level)
-    : kernels_(&lane_kernels<Scalar>(level)), grid_(level) {}
+    : kernels_(&crowd_kernels<Scalar>(level)), grid_(level) {}
 
 template <typename Scalar>
 void NearList<Scalar>::fit(const Discs<Scalar>& discs, const std::optional<Box>& box) {
@@ -39,7 +39,8 @@ template <typename Scalar>
 void NearList<Scalar>::all_moved(Scalar at_most_m) {
     last_move_m_ = at_most_m;
     farthest_m_ += at_most_m + worst_shift_m_;
-    slop_m_ = farthest_m_ * (static_cast<Scalar>(kSlop) * std::numeric_limits<Scalar>::epsilon());
+    slop_m_ =
+        farthest_m_ * (static_cast<Scalar>(kSlopUlps) * std::numeric_limits<Scalar>::epsilon());
     travelled_m_ += at_most_m + slop_m_;
 }
 

@@ -52,7 +52,7 @@ class NearList {
     Scalar margin_for(Scalar reach_m) const;
     void pick(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs);
 
-    const LaneKernels<Scalar>* kernels_;
+    const CrowdKernels<Scalar>* kernels_;
     CellGrid<Scalar> grid_;
     std::optional<Box> box_;
     NearPairs near_;

@@ -28,7 +28,7 @@ template <typename Scalar>
 class DiscreteSolver final : public Solver<Scalar> {
   public:
     DiscreteSolver(std::uint32_t substeps, SimdLevel level)
-        : substeps_(substeps), kernels_(&lane_kernels<Scalar>(level)), near_(level) {}
+        : substeps_(substeps), kernels_(&crowd_kernels<Scalar>(level)), near_(level) {}
 
     DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                               Record<Scalar>& record) override;
@@ -78,7 +78,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     Discs<Scalar> discs() const { return {x_m_, y_m_, radius_m_, largest_radius_m_}; }
 
     std::uint32_t substeps_;
-    const LaneKernels<Scalar>* kernels_;
+    const CrowdKernels<Scalar>* kernels_;
     bool forgotten_ = true;
     bool ahead_ = false;  // of the bodies
     std::uint32_t lists_until_order_ = 0;

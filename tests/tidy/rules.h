@@ -73,7 +73,8 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
     {"the compiler's vector instructions", "emmintrin.h immintrin.h",
-     "common/physics/near_lanes.h common/physics/swept_lanes.cpp "
+     "common/physics/crowd_loops.h common/physics/crowd_kernels_avx2.cpp "
+     "common/physics/crowd_kernels_avx512.cpp common/physics/swept_lanes.cpp "
      "common/physics/swept_lanes_avx2.cpp common/physics/swept_lanes_avx512.cpp",
      false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",

@@ -1,4 +1,4 @@
-// The loops of lane_kernels.h over a type `Lanes` that has the vector instructions of one level.
+// The loops of crowd_kernels.h over a type `Lanes` that has the vector instructions of one level.
 // For the sources that are compiled for such a level: nothing here may be shared with others, so
 // `Lanes` must be local to its source, every template has it, and nothing else is called.
 //
@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/physics/lane_kernels.h"
+#include "common/physics/crowd_kernels.h"
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -250,7 +250,7 @@ std::size_t pick(const PairTest<typename Lanes::Scalar>& pairs, std::uint32_t* n
 }
 
 template <typename Lanes>
-inline constexpr LaneKernels<typename Lanes::Scalar> kKernelsOf = {
+inline constexpr CrowdKernels<typename Lanes::Scalar> kKernelsOf = {
     advance_lanes<Lanes>, outside_lanes<Lanes>, search_cells<Lanes>, pick<Lanes>};
 
 }  // namespace fts::physics

@@ -1,8 +1,8 @@
 // Compiled with -mavx512f -mavx512vl -mavx512dq -mavx512bw -mpopcnt.
 #include <immintrin.h>
 
-#include "common/physics/lane_kernels_x86.h"
-#include "common/physics/lane_loops.h"
+#include "common/physics/crowd_kernels_x86.h"
+#include "common/physics/crowd_loops.h"
 
 namespace fts::physics {
 namespace {
@@ -115,7 +115,7 @@ struct Floats {
 
 }  // namespace
 
-const LaneKernels<double> kAvx512OfDoubles = kKernelsOf<Doubles>;
-const LaneKernels<float> kAvx512OfFloats = kKernelsOf<Floats>;
+const CrowdKernels<double> kAvx512OfDoubles = kKernelsOf<Doubles>;
+const CrowdKernels<float> kAvx512OfFloats = kKernelsOf<Floats>;
 
 }  // namespace fts::physics

@@ -1,8 +1,8 @@
 // Compiled with -mavx2 -mpopcnt.
 #include <immintrin.h>
 
-#include "common/physics/lane_kernels_x86.h"
-#include "common/physics/lane_loops.h"
+#include "common/physics/crowd_kernels_x86.h"
+#include "common/physics/crowd_loops.h"
 
 namespace fts::physics {
 namespace {
@@ -154,7 +154,7 @@ struct Floats {
 
 }  // namespace
 
-const LaneKernels<double> kAvx2OfDoubles = kKernelsOf<Doubles>;
-const LaneKernels<float> kAvx2OfFloats = kKernelsOf<Floats>;
+const CrowdKernels<double> kAvx2OfDoubles = kKernelsOf<Doubles>;
+const CrowdKernels<float> kAvx2OfFloats = kKernelsOf<Floats>;
 
 }  // namespace fts::physics

@@ -1,10 +1,10 @@
-#include "common/physics/lane_kernels.h"
+#include "common/physics/crowd_kernels.h"
 
 #include <cassert>
 #include <initializer_list>
 
-#include "common/physics/lane_kernels_x86.h"
-#include "common/physics/lane_loops.h"
+#include "common/physics/crowd_kernels_x86.h"
+#include "common/physics/crowd_loops.h"
 
 namespace fts::physics {
 namespace {
@@ -153,21 +153,21 @@ struct KernelsByLevel;
 
 template <>
 struct KernelsByLevel<double> {
-    static constexpr const LaneKernels<double>* kPlain = &kKernelsOf<PlainLanes<double>>;
+    static constexpr const CrowdKernels<double>* kPlain = &kKernelsOf<PlainLanes<double>>;
 #if defined(__x86_64__)
-    static constexpr const LaneKernels<double>* kSse2 = &kKernelsOf<Sse2Doubles>;
-    static constexpr const LaneKernels<double>* kAvx2 = &kAvx2OfDoubles;
-    static constexpr const LaneKernels<double>* kAvx512 = &kAvx512OfDoubles;
+    static constexpr const CrowdKernels<double>* kSse2 = &kKernelsOf<Sse2Doubles>;
+    static constexpr const CrowdKernels<double>* kAvx2 = &kAvx2OfDoubles;
+    static constexpr const CrowdKernels<double>* kAvx512 = &kAvx512OfDoubles;
 #endif
 };
 
 template <>
 struct KernelsByLevel<float> {
-    static constexpr const LaneKernels<float>* kPlain = &kKernelsOf<PlainLanes<float>>;
+    static constexpr const CrowdKernels<float>* kPlain = &kKernelsOf<PlainLanes<float>>;
 #if defined(__x86_64__)
-    static constexpr const LaneKernels<float>* kSse2 = &kKernelsOf<Sse2Floats>;
-    static constexpr const LaneKernels<float>* kAvx2 = &kAvx2OfFloats;
-    static constexpr const LaneKernels<float>* kAvx512 = &kAvx512OfFloats;
+    static constexpr const CrowdKernels<float>* kSse2 = &kKernelsOf<Sse2Floats>;
+    static constexpr const CrowdKernels<float>* kAvx2 = &kAvx2OfFloats;
+    static constexpr const CrowdKernels<float>* kAvx512 = &kAvx512OfFloats;
 #endif
 };
 
@@ -194,7 +194,7 @@ SimdLevel best_simd_level() {
 }
 
 template <typename Scalar>
-const LaneKernels<Scalar>& lane_kernels(SimdLevel level) {
+const CrowdKernels<Scalar>& crowd_kernels(SimdLevel level) {
     using Kernels = KernelsByLevel<Scalar>;
     assert(is_supported(level));
 #if defined(__x86_64__)
@@ -212,7 +212,7 @@ const LaneKernels<Scalar>& lane_kernels(SimdLevel level) {
     return *Kernels::kPlain;
 }
 
-template const LaneKernels<double>& lane_kernels(SimdLevel);
-template const LaneKernels<float>& lane_kernels(SimdLevel);
+template const CrowdKernels<double>& crowd_kernels(SimdLevel);
+template const CrowdKernels<float>& crowd_kernels(SimdLevel);
 
 }  // namespace fts::physics

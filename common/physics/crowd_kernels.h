@@ -10,7 +10,7 @@
 namespace fts::physics {
 
 // So many elements may be read and written beyond the end of what a kernel works on.
-inline constexpr std::uint32_t kMostLanes = 16;
+inline constexpr std::uint32_t kWidestLanes = 16;
 
 // Discs sorted by the cells of rows, as CellGrid has them; `a` and `b` take the pairs found.
 template <typename Scalar>
@@ -54,7 +54,7 @@ struct Range2 {
 };
 
 template <typename Scalar>
-struct LaneKernels {
+struct CrowdKernels {
     // Moves all by their velocities; gives the greatest square of a speed.
     Scalar (*advance)(Scalar* x_m, Scalar* y_m, const Scalar* vx_mps, const Scalar* vy_mps,
                       Scalar span_s, std::size_t count);
@@ -69,6 +69,6 @@ struct LaneKernels {
 
 // Expects a level that is supported.
 template <typename Scalar>
-const LaneKernels<Scalar>& lane_kernels(SimdLevel level);
+const CrowdKernels<Scalar>& crowd_kernels(SimdLevel level);
 
 }  // namespace fts::physics
