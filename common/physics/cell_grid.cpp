@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/physics/crowd_range.h"
 
@@ -124,8 +125,19 @@ void CellGrid<Scalar>::add_images(const Discs<Scalar>& discs) {
         if (column == 1) add(disc, x_m + axis_[0].extent_m, y_m, cell + columns);
         if (column == columns) add(disc, x_m - axis_[0].extent_m, y_m, cell - columns);
     };
-    for (std::uint32_t i = 0; i < discs.count(); ++i) {
-        const std::uint32_t column = cell_[i] % stride_;
+    // Only what is near a side can be in a cell there.
+    const auto inner = [](const Axis& axis) {
+        const Scalar rim_m = Scalar(1.5) * (axis.extent_m / static_cast<Scalar>(axis.cells));
+        return std::pair(axis.origin_m + rim_m, axis.origin_m + (axis.extent_m - rim_m));
+    };
+    const auto [left_m, right_m] = inner(axis_[0]);
+    const auto [bottom_m, top_m] = inner(axis_[1]);
+    at_side_.resize(discs.count());
+    const std::size_t at_side =
+        crowd_kernels<Scalar>(level_).outside(discs.x_m.data(), discs.y_m.data(), discs.count(),
+                                              {left_m, right_m, bottom_m, top_m}, at_side_.data());
+    for (std::size_t k = 0; k < at_side; ++k) {
+        const std::uint32_t i = at_side_[k], column = cell_[i] % stride_;
         add_row(i, discs.y_m[i], cell_[i], column);
         if (cell_[i] < stride_) {
             const Scalar above_m = discs.y_m[i] + axis_[1].extent_m;

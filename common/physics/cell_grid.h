@@ -90,6 +90,7 @@ class CellGrid {
     std::vector<Scalar> x_m_, y_m_, radius_m_;  // by place
     std::vector<std::uint32_t> disc_;           // by place
     std::vector<Image> images_;
+    std::vector<std::uint32_t> at_side_;
     std::vector<Scalar> sample_;
 };
 

@@ -16,7 +16,9 @@
 
 #include "common/physics/crowd_kernels.h"
 
-#if defined(__SSE2__)
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -205,13 +207,59 @@ template <typename Lanes, bool kEqualRadii, bool kPeriodic>
 
 #endif
 
+#if defined(__AVX2__)
+
+template <typename Lanes, bool kEqualRadii, bool kPeriodic>
+[[gnu::always_inline]] inline std::uint32_t near_pairs_at_once(const PairTest<double>& in,
+                                                               std::size_t k) {
+    const std::uint32_t *const a = in.a + k, *const b = in.b + k;
+    const auto two = [](const double* values, const std::uint32_t* at) {
+        return _mm_loadh_pd(_mm_load_sd(values + at[0]), values + at[1]);
+    };
+    const auto four = [](__m128d low, __m128d high) {
+        return _mm256_insertf128_pd(_mm256_castpd128_pd256(low), high, 1);
+    };
+    const auto apart = [&](const double* values) {
+        return four(_mm_sub_pd(two(values, a), two(values, b)),
+                    _mm_sub_pd(two(values, a + 2), two(values, b + 2)));
+    };
+    __m256d x = apart(in.x_m), y = apart(in.y_m);
+    if constexpr (kPeriodic) {
+        const auto to_image = [](__m256d separation, double extent) {
+            const __m256d near = _mm256_andnot_pd(_mm256_set1_pd(-0.0), separation);
+            return _mm256_min_pd(near, _mm256_sub_pd(_mm256_set1_pd(extent), near));
+        };
+        x = to_image(x, in.extent_x_m);
+        y = to_image(y, in.extent_y_m);
+    }
+    __m256d reach = _mm256_set1_pd(in.reach_m);
+    if constexpr (!kEqualRadii) {
+        const __m256d radii = four(_mm_add_pd(two(in.radius_m, a), two(in.radius_m, b)),
+                                   _mm_add_pd(two(in.radius_m, a + 2), two(in.radius_m, b + 2)));
+        reach = _mm256_add_pd(radii, reach);
+    }
+    const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
+    const __m256d is_near = _mm256_cmp_pd(squared, _mm256_mul_pd(reach, reach), _CMP_LT_OQ);
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(is_near));
+}
+
+#elif defined(__SSE2__)
+
+template <typename Lanes, bool kEqualRadii, bool kPeriodic>
+[[gnu::always_inline]] inline std::uint32_t near_pairs_at_once(const PairTest<double>& in,
+                                                               std::size_t k) {
+    return two_near_pairs<Lanes, kEqualRadii, kPeriodic>(in, k) |
+           two_near_pairs<Lanes, kEqualRadii, kPeriodic>(in, k + 2) << 2U;
+}
+
+#endif
+
 template <typename Lanes, bool kEqualRadii, bool kPeriodic>
 [[gnu::always_inline]] inline std::uint32_t four_near_pairs(
     const PairTest<typename Lanes::Scalar>& in, std::size_t k) {
 #if defined(__SSE2__)
     if constexpr (Lanes::kHasSse2 && sizeof(typename Lanes::Scalar) == sizeof(double)) {
-        return two_near_pairs<Lanes, kEqualRadii, kPeriodic>(in, k) |
-               two_near_pairs<Lanes, kEqualRadii, kPeriodic>(in, k + 2) << 2U;
+        return near_pairs_at_once<Lanes, kEqualRadii, kPeriodic>(in, k);
     }
 #endif
     return near_pairs<Lanes, kEqualRadii, kPeriodic>(in, k, kPairsAtOnce);

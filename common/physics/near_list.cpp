@@ -16,6 +16,9 @@ constexpr double kWidestMargin = 0.8;
 // In units of the last place of the largest coordinate.
 constexpr double kSlopUlps = 16.0;
 
+// So many pairs are tested before what was found is looked at again.
+constexpr std::size_t kPairsInCache = 4096;
+
 }  // namespace
 
 template <typename Scalar>
@@ -70,7 +73,7 @@ void NearList<Scalar>::make(const Discs<Scalar>& discs) {
     worst_shift_m_ = Scalar(0);
     shift_m_.assign(discs.count(), Scalar(0));
     grid_.find_near(discs, margin_m_ + slop_m_, near_);
-    picked_.resize(near_.a.size());
+    picked_.resize(kPairsInCache);
     holds_ = true;
 }
 
@@ -79,22 +82,24 @@ void NearList<Scalar>::pick(const Discs<Scalar>& discs, std::vector<DiscPair>& p
     const bool equal = discs.radius_m.empty();
     const Scalar sum_of_equal = discs.largest_radius_m + discs.largest_radius_m;
     const Vec2<Scalar> extent_m = box_ ? box_->extent_m() : Vec2<Scalar>(Vec2<Scalar>::Zero());
-    const PairTest<Scalar> test = {discs.x_m.data(),
-                                   discs.y_m.data(),
-                                   equal ? nullptr : discs.radius_m.data(),
-                                   near_.a.data(),
-                                   near_.b.data(),
-                                   near_.count,
-                                   (equal ? sum_of_equal : Scalar(0)) + slop_m_,
-                                   extent_m.x(),
-                                   extent_m.y()};
-    const std::size_t count = kernels_->pick(test, picked_.data());
-    for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t a = near_.a[picked_[k]], b = near_.b[picked_[k]];
-        const Scalar reach = equal ? sum_of_equal : discs.radius_m[a] + discs.radius_m[b];
-        const Vec2<Scalar> line =
-            nearest_image<Scalar>({discs.x_m[a] - discs.x_m[b], discs.y_m[a] - discs.y_m[b]}, box_);
-        if (line.x() * line.x() + line.y() * line.y() < reach * reach) pairs.push_back({a, b});
+    for (std::size_t from = 0; from < near_.count; from += kPairsInCache) {
+        const PairTest<Scalar> test = {discs.x_m.data(),
+                                       discs.y_m.data(),
+                                       equal ? nullptr : discs.radius_m.data(),
+                                       near_.a.data() + from,
+                                       near_.b.data() + from,
+                                       std::min(kPairsInCache, near_.count - from),
+                                       (equal ? sum_of_equal : Scalar(0)) + slop_m_,
+                                       extent_m.x(),
+                                       extent_m.y()};
+        const std::size_t count = kernels_->pick(test, picked_.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t a = test.a[picked_[k]], b = test.b[picked_[k]];
+            const Scalar reach = equal ? sum_of_equal : discs.radius_m[a] + discs.radius_m[b];
+            const Vec2<Scalar> line = nearest_image<Scalar>(
+                {discs.x_m[a] - discs.x_m[b], discs.y_m[a] - discs.y_m[b]}, box_);
+            if (line.squaredNorm() < reach * reach) pairs.push_back({a, b});
+        }
     }
 }
 

@@ -22,7 +22,7 @@ namespace {
 // memory.
 constexpr std::uint32_t kListsPerOrder = 16;
 // How many hits ahead of its turn a hit's bodies are fetched.
-constexpr std::size_t kHitsAhead = 8;
+constexpr std::size_t kHitsAhead = 12;
 
 template <typename Scalar>
 class DiscreteSolver final : public Solver<Scalar> {
@@ -62,7 +62,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     template <bool kEqualMasses>
     void record_collision(const SlotPair& hit, const Line& line, Scalar strength, Scalar overlap_m,
                           Scalar time_s);
-    std::span<const std::uint32_t> outside(const Range2<Scalar>& inside);
+    std::span<const std::uint32_t> outside(const Box& box);
     void wrap(std::uint32_t i);
     template <bool kEqualRadii>
     [[gnu::noinline]] void reflect_from_walls(Scalar time_s);
@@ -104,6 +104,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     std::vector<std::uint32_t> old_slot_;
     std::vector<Scalar> old_;
     std::vector<std::uint32_t> outside_;
+    Box inside_;                        // of the periodic box, both ends inclusive
     std::vector<std::uint32_t> slots_;  // of those at the boundary
 };
 
@@ -233,14 +234,15 @@ Scalar DiscreteSolver<Scalar>::advance_in_box(Scalar span_s) {
     const Scalar farthest_m = advance(span_s);
     const Box box = *model_->periodic;
     constexpr Scalar kDown = -std::numeric_limits<Scalar>::infinity();
-    const Range2<Scalar> inside = {box.min_m.x(), std::nextafter(box.max_m.x(), kDown),
-                                   box.min_m.y(), std::nextafter(box.max_m.y(), kDown)};
-    for (const std::uint32_t i : outside(inside)) wrap(i);
+    inside_ = {box.min_m,
+               {std::nextafter(box.max_m.x(), kDown), std::nextafter(box.max_m.y(), kDown)}};
+    for (const std::uint32_t i : outside(inside_)) wrap(i);
     return farthest_m;
 }
 
 template <typename Scalar>
-std::span<const std::uint32_t> DiscreteSolver<Scalar>::outside(const Range2<Scalar>& inside) {
+std::span<const std::uint32_t> DiscreteSolver<Scalar>::outside(const Box& box) {
+    const Range2<Scalar> inside = {box.min_m.x(), box.max_m.x(), box.min_m.y(), box.max_m.y()};
     if (outside_.size() < count()) outside_.resize(count());
     return {outside_.data(),
             kernels_->outside(x_m_.data(), y_m_.data(), count(), inside, outside_.data())};
@@ -358,8 +360,9 @@ void DiscreteSolver<Scalar>::resolve_pair(const SlotPair& hit, Scalar time_s) {
     near_.moved(a, overlap * share_a);
     near_.moved(b, overlap * share_b);
     if constexpr (kPeriodic) {
-        wrap(a);
-        wrap(b);
+        for (const std::uint32_t i : {a, b}) {
+            if (!is_within<Scalar>(inside_, x_m_[i], y_m_[i])) wrap(i);
+        }
     }
 }
 
@@ -407,8 +410,7 @@ template <bool kEqualRadii>
 void DiscreteSolver<Scalar>::reflect_from_walls(Scalar time_s) {
     const Box room = room_for(*model_->walls, largest_radius_m_);
     slots_.clear();
-    for (const std::uint32_t i :
-         outside({room.min_m.x(), room.max_m.x(), room.min_m.y(), room.max_m.y()})) {
+    for (const std::uint32_t i : outside(room)) {
         const Scalar radius = kEqualRadii ? largest_radius_m_ : radius_m_[i];
         const Box own = room_for(*model_->walls, radius);
         if (!is_within<Scalar>(own, x_m_[i], y_m_[i])) slots_.push_back(slot_[i]);
