@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "server/lab/bench_command.h"
 #include "server/lab/compare_command.h"
 #include "server/lab/exit_codes.h"
 #include "server/lab/plan_command.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
     fts::lab::add_run(app, exit_code);
     fts::lab::add_compare(app, exit_code);
     fts::lab::add_plan(app, exit_code);
+    fts::lab::add_bench(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -65,12 +65,15 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"stb", "stb_", "client/sdl", true},
     {"SQLite", "sqlite3.h", "server/economy", true},
     {"CLI11", "CLI/",
-     "server/main.cpp tests/accuracy/main.cpp server/lab server/ops client/sdl/main.cpp "
-     "client/bot/main.cpp",
+     "server/main.cpp tests/accuracy/main.cpp tests/bench/speed_page.cpp server/lab server/ops "
+     "client/sdl/main.cpp client/bot/main.cpp",
      false},
     {"spdlog", "spdlog/ fmt/",
      "server/main.cpp server/lab server/ops client/sdl/main.cpp client/bot/main.cpp", false},
     {"nlohmann::json", "nlohmann/", "client/bot server/lab server/ops tests", false},
+    {"Box2D", "box2d/", "server/lab/peers/box2d_engine.cpp", true},
+    {"Chipmunk", "chipmunk/", "server/lab/peers/chipmunk_engine.cpp", true},
+    {"Google Benchmark", "benchmark/", "tests/bench", true},
     {"GoogleTest", "gtest/ gmock/", "tests", false},
     {"the compiler's vector instructions", "emmintrin.h immintrin.h",
      "common/physics/crowd_loops.h common/physics/crowd_kernels_avx2.cpp "

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cassert>
+#include <functional>
+#include <utility>
+
+#include "common/physics/world.h"
+#include "server/lab/bench/engine.h"
+#include "server/lab/bench/memory_pass.h"
+#ifdef FTS_BOX2D
+#include "server/lab/peers/box2d_engine.h"
+#endif
+#ifdef FTS_CHIPMUNK
+#include "server/lab/peers/chipmunk_engine.h"
+#endif
+
+namespace fts::lab {
+namespace {
+
+using physics::Scene;
+using physics::SolverKind;
+
+template <typename Scalar>
+class WorldEngine : public Engine {
+  public:
+    WorldEngine(const Scene& scene, SolverKind solver, double tick_s)
+        : world_(scene, {solver, 1}), tick_s_(static_cast<Scalar>(tick_s)) {}
+
+    void step() override { world_.step(tick_s_); }
+
+    BallState ball(std::size_t i) const override {
+        const auto body = world_.body(world_.ids()[i]);
+        return {body.position_m.template cast<double>(), body.velocity_mps.template cast<double>()};
+    }
+
+    std::optional<std::uint64_t> collisions() const override {
+        return world_.audit().ball_collisions + world_.audit().wall_collisions;
+    }
+
+  private:
+    physics::World<Scalar> world_;
+    Scalar tick_s_;
+};
+
+using Maker = std::function<std::unique_ptr<Engine>(const Scene&, double tick_s)>;
+
+struct Known {
+    EngineInfo info;
+    Maker make;
+};
+
+template <typename Scalar>
+Known solver(SolverKind kind, const std::string& scalar, std::size_t max_balls) {
+    const std::string name(physics::to_string(kind));
+    return {{name + "-" + scalar, name + " " + scalar, max_balls, false},
+            [kind](const Scene& scene, double tick_s) {
+                return std::make_unique<WorldEngine<Scalar>>(scene, kind, tick_s);
+            }};
+}
+
+void add_solver(std::vector<Known>& all, SolverKind kind, std::size_t max_balls) {
+    all.push_back(solver<float>(kind, "float", max_balls));
+    all.push_back(solver<double>(kind, "double", max_balls));
+}
+
+void add_peers([[maybe_unused]] std::vector<Known>& all) {
+#ifdef FTS_BOX2D
+    all.push_back({{"box2d", "Box2D", 100'000, false}, [](const Scene& scene, double tick_s) {
+                       return make_box2d(scene, tick_s, Bullets::kNo);
+                   }});
+    // Each time of impact looks at every contact again.
+    all.push_back(
+        {{"box2d-bullets", "Box2D, bullets", 2'000, false}, [](const Scene& scene, double tick_s) {
+             return make_box2d(scene, tick_s, Bullets::kYes);
+         }});
+#endif
+#ifdef FTS_CHIPMUNK
+    all.push_back({{"chipmunk-hash", "Chipmunk, spatial hash", 100'000, false},
+                   [](const Scene& scene, double tick_s) {
+                       return make_chipmunk(scene, tick_s, ChipmunkIndex::kSpatialHash);
+                   }});
+    all.push_back({{"chipmunk-tree", "Chipmunk, box tree", 100'000, false},
+                   [](const Scene& scene, double tick_s) {
+                       return make_chipmunk(scene, tick_s, ChipmunkIndex::kBoxTree);
+                   }});
+#endif
+}
+
+const std::vector<Known>& known() {
+    static const std::vector<Known> kAll = [] {
+        std::vector<Known> all;
+        add_solver(all, SolverKind::kDiscrete, physics::kMaxBodies);
+        add_solver(all, SolverKind::kSwept, physics::kMaxBodies);
+        add_solver(all, SolverKind::kEvent, physics::kMaxBodies);
+        add_solver(all, SolverKind::kSeed, 2'000);  // looks at every pair
+        add_peers(all);
+        all.push_back({{"memory-float", "memory, float", physics::kMaxBodies, true},
+                       make_memory_pass<float>});
+        all.push_back({{"memory-double", "memory, double", physics::kMaxBodies, true},
+                       make_memory_pass<double>});
+        return all;
+    }();
+    return kAll;
+}
+
+}  // namespace
+
+const std::vector<EngineInfo>& engines() {
+    static const std::vector<EngineInfo> kInfos = [] {
+        std::vector<EngineInfo> infos;
+        for (const Known& one : known()) infos.push_back(one.info);
+        return infos;
+    }();
+    return kInfos;
+}
+
+const EngineInfo* find_engine(const std::string& name) {
+    const auto& all = engines();
+    const auto found = std::ranges::find(all, name, &EngineInfo::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::unique_ptr<Engine> make_engine(const std::string& name, const Scene& scene, double tick_s) {
+    for (const Known& one : known()) {
+        if (one.info.name == name) return one.make(scene, tick_s);
+    }
+    assert(false && "no such engine in this build");
+    return nullptr;
+}
+
+}  // namespace fts::lab

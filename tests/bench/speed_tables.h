@@ -1,0 +1,17 @@
+// The tables and figures of the speed page, from what fts-bench left.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/accuracy/figures.h"
+#include "tests/bench/kept_results.h"
+
+namespace fts::bench {
+
+// A set that was not measured leaves its tables and figures out.
+std::vector<accuracy::Table> speed_tables(const std::map<std::string, KeptSet>& sets);
+std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>& sets);
+
+}  // namespace fts::bench
