@@ -30,9 +30,10 @@ Ticks ticks_of(const RunSettings& settings) {
 }
 
 template <typename Scalar>
-class Run {
+class RunInProgress {
   public:
-    Run(const physics::Scene& scene, const RunSettings& settings, const Observer& observer)
+    RunInProgress(const physics::Scene& scene, const RunSettings& settings,
+                  const Observer& observer)
         : settings_(settings),
           observer_(observer),
           ticks_(ticks_of(settings)),
@@ -146,8 +147,8 @@ double RunResult::collisions_per_s() const {
 
 RunResult run(const physics::Scene& scene, const RunSettings& settings, const Observer& observer) {
     return settings.setting.scalar == physics::ScalarKind::kFloat
-               ? Run<float>(scene, settings, observer).go()
-               : Run<double>(scene, settings, observer).go();
+               ? RunInProgress<float>(scene, settings, observer).go()
+               : RunInProgress<double>(scene, settings, observer).go();
 }
 
 }  // namespace fts::lab

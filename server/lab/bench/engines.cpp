@@ -49,7 +49,7 @@ struct Known {
 };
 
 template <typename Scalar>
-Known solver(SolverKind kind, const std::string& scalar, std::size_t max_balls) {
+Known solver_engine(SolverKind kind, const std::string& scalar, std::size_t max_balls) {
     const std::string name(physics::to_string(kind));
     return {{name + "-" + scalar, name + " " + scalar, max_balls, false},
             [kind](const Scene& scene, double tick_s) {
@@ -58,8 +58,8 @@ Known solver(SolverKind kind, const std::string& scalar, std::size_t max_balls) 
 }
 
 void add_solver(std::vector<Known>& all, SolverKind kind, std::size_t max_balls) {
-    all.push_back(solver<float>(kind, "float", max_balls));
-    all.push_back(solver<double>(kind, "double", max_balls));
+    all.push_back(solver_engine<float>(kind, "float", max_balls));
+    all.push_back(solver_engine<double>(kind, "double", max_balls));
 }
 
 void add_peers([[maybe_unused]] std::vector<Known>& all) {

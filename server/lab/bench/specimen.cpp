@@ -27,8 +27,9 @@ physics::Scene pairs_at(double closing_mps, std::size_t pairs, double room_m) {
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(pairs))));
     physics::Scene scene;
     for (std::size_t k = 0; k < pairs; ++k) {
-        const physics::Vec2d middle(static_cast<double>(k % columns) * room_m,
-                                    static_cast<double>(k / columns) * 4.0 * kBenchRadiusM);
+        const std::size_t row = k / columns, column = k % columns;
+        const physics::Vec2d middle(static_cast<double>(column) * room_m,
+                                    static_cast<double>(row) * 4.0 * kBenchRadiusM);
         const double until_touch_s = (0.5 + random.uniform()) * kBenchTickS;
         const physics::Vec2d half(kBenchRadiusM + 0.5 * closing_mps * until_touch_s, 0.0);
         const physics::Vec2d velocity(0.5 * closing_mps, 0.0);
