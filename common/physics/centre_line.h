@@ -20,8 +20,9 @@ struct CentreLine {
 // Centres that coincide have the line of their relative velocity, and at rest that along x. Below
 // the least distance whose square keeps all its digits, centres coincide.
 template <typename Scalar>
-CentreLine<Scalar> centre_line(const Vec2<Scalar>& separation_m, const Vec2<Scalar>& velocity_a_mps,
-                               const Vec2<Scalar>& velocity_b_mps) {
+[[gnu::always_inline]] inline CentreLine<Scalar> centre_line(const Vec2<Scalar>& separation_m,
+                                                             const Vec2<Scalar>& velocity_a_mps,
+                                                             const Vec2<Scalar>& velocity_b_mps) {
     constexpr Scalar kCoincident =
         std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
     Scalar x = separation_m.x(), y = separation_m.y();

@@ -24,7 +24,7 @@ struct Change {
 
 // Of a pair of finite masses, or of the finite one as seen from the infinite one.
 template <typename Scalar>
-Change energy_change(const Contact<Scalar>& c) {
+[[gnu::always_inline]] inline Change energy_change(const Contact<Scalar>& c) {
     const Vec2d before_a = c.velocity_a_before_mps.template cast<double>();
     const Vec2d before_b = c.velocity_b_before_mps.template cast<double>();
     const Vec2d after_a = c.velocity_a_after_mps.template cast<double>();
@@ -61,7 +61,7 @@ double momentum_error(const Contact<Scalar>& c) {
 // False only if momentum_error is not above `worst`, which is found without roots: the sum of two
 // lengths is not less than the root of the sum of their squares.
 template <typename Scalar>
-bool may_be_worse(const Contact<Scalar>& c, double worst) {
+[[gnu::always_inline]] inline bool may_be_worse(const Contact<Scalar>& c, double worst) {
     const double mass_a = static_cast<double>(c.mass_a_kg);
     const double mass_b = static_cast<double>(c.mass_b_kg);
     const Vec2d before_a = mass_a * c.velocity_a_before_mps.template cast<double>();

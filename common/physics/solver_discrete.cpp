@@ -58,7 +58,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     void resolve_pair(const SlotPair& hit, Scalar time_s);
     void fetch(const SlotPair& hit) const;
     template <bool kPeriodic>
-    Line line_of_centres(std::uint32_t a, std::uint32_t b) const;
+    [[gnu::always_inline]] inline Line line_of_centres(std::uint32_t a, std::uint32_t b) const;
     template <bool kEqualMasses>
     void record_collision(const SlotPair& hit, const Line& line, Scalar strength, Scalar overlap_m,
                           Scalar time_s);
@@ -368,7 +368,8 @@ void DiscreteSolver<Scalar>::resolve_pair(const SlotPair& hit, Scalar time_s) {
 
 template <typename Scalar>
 template <bool kPeriodic>
-auto DiscreteSolver<Scalar>::line_of_centres(std::uint32_t a, std::uint32_t b) const -> Line {
+inline auto DiscreteSolver<Scalar>::line_of_centres(std::uint32_t a, std::uint32_t b) const
+    -> Line {
     Vec separation_m(x_m_[a] - x_m_[b], y_m_[a] - y_m_[b]);
     if constexpr (kPeriodic) {
         separation_m = nearest_image<Scalar>(separation_m, model_->periodic);
@@ -389,20 +390,23 @@ void DiscreteSolver<Scalar>::record_collision(const SlotPair& hit, const Line& l
     const Vec normal(line.x / line.length, line.y / line.length);
     const Vec position_a(x_m_[a], y_m_[a]);
     const Scalar radius_a = radius_of(a);
-    Contact<Scalar>& contact = record_->contacts.emplace_back();
-    contact.a = all.id_of(hit.slot_a);
-    contact.b = all.id_of(hit.slot_b);
-    contact.time_s = time_s;
-    contact.point_m = position_a - radius_a * normal;
-    contact.normal = normal;
-    contact.impulse_ns = strength * line.length * reduced_kg;
-    contact.position_a_m = position_a;
-    contact.position_b_m = position_a - line.distance_m * normal;
-    contact.velocity_a_before_mps = {vx_mps_[a], vy_mps_[a]};
-    contact.velocity_b_before_mps = {vx_mps_[b], vy_mps_[b]};
-    contact.mass_a_kg = mass_a;
-    contact.mass_b_kg = mass_b;
-    contact.penetration = overlap_m / std::min(radius_a, radius_of(b));
+    const Vec still = Vec::Zero();  // the velocities after are known later
+    record_->contacts.push_back({.a = all.id_of(hit.slot_a),
+                                 .b = all.id_of(hit.slot_b),
+                                 .time_s = time_s,
+                                 .point_m = position_a - radius_a * normal,
+                                 .normal = normal,
+                                 .impulse_ns = strength * line.length * reduced_kg,
+                                 .position_a_m = position_a,
+                                 .position_b_m = position_a - line.distance_m * normal,
+                                 .velocity_a_before_mps = {vx_mps_[a], vy_mps_[a]},
+                                 .velocity_a_after_mps = still,
+                                 .velocity_b_before_mps = {vx_mps_[b], vy_mps_[b]},
+                                 .velocity_b_after_mps = still,
+                                 .mass_a_kg = mass_a,
+                                 .mass_b_kg = mass_b,
+                                 .penetration = overlap_m / std::min(radius_a, radius_of(b)),
+                                 .contacts_at_once = 1});
 }
 
 template <typename Scalar>
