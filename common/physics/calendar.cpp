@@ -10,6 +10,13 @@ void Calendar::reset(std::uint32_t slots) {
     end_ = kRoot;
 }
 
+void Calendar::clear() {
+    for (; end_ > kRoot; --end_) {
+        slot_of_[at(end_ - 1).body] = kNowhere;
+        at(end_ - 1) = Entry();
+    }
+}
+
 void Calendar::set(std::uint32_t body, double time_s) {
     if (time_s == std::numeric_limits<double>::infinity()) {
         remove(body);

@@ -3,9 +3,8 @@
 // order of events is total and depends on the times only.
 //
 // A heap of four children a node, each brood in one cache line, that knows where every body stands.
-// What a simulation asks of it is set, top and rebase: a queue of bounded increment (Paul, "A
-// complexity O(1) priority queue for event driven molecular dynamics simulations", 2007) would do
-// as well.
+// For few: what an entry costs grows with the logarithm of their number. bucket_calendar.h is for
+// many.
 //
 // Not thread-safe. No allocation but in `reset`.
 #pragma once
@@ -30,6 +29,8 @@ class Calendar {
 
     // Empties it. `slots` is above every body's index.
     void reset(std::uint32_t slots);
+    // Empties it. Linear in the number of entries.
+    void clear();
 
     // Enters a body, or moves it. An infinite time removes it.
     void set(std::uint32_t body, double time_s);

@@ -16,9 +16,6 @@ namespace {
 // of coordinates, so that a body a little outside its cell is still next to all it touches.
 constexpr double kCellRoom = 1.0 / 64.0;
 constexpr double kCellRoundOff = 64.0;
-// By how many units of round-off a pair may seem to miss, or to meet too late, and still be
-// computed exactly.
-constexpr double kFilterSlack = 16.0;
 // Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
 // reach and speed: far above round-off.
 constexpr double kApartSlack = 1e-2;
@@ -32,20 +29,26 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
     model_ = model;
     if (model_.periodic) extent_m_ = model_.periodic->extent_m();
     now_s_ = begin_s_ = end_s_ = end_rest_s_ = 0.0;
-    flights_.assign(bodies.slots(), Flight());
-    prospects_.assign(bodies.slots(), Prospect());
-    living_.clear();
+    flights_.assign(bodies.ids.size(), Flight());
+    prospects_.assign(bodies.ids.size(), Prospect());
     apart_.clear();
     free_apart_ = kNobody;
     calendar_.reset(bodies.slots());
-    for (const BodyId id : bodies.ids) {
-        living_.push_back(id.index);
-        Flight& flight = flights_[id.index];
-        flight.position_m = bodies.position_m[id.index];
-        flight.velocity_mps = bodies.velocity_mps[id.index];
-        flight.radius_m = bodies.radius_m[id.index];
-        prospects_[id.index].mass_kg = bodies.mass_kg[id.index];
-        prospects_[id.index].hit_s = -std::numeric_limits<double>::infinity();
+    found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kFilterSpare);
+    index_of_.resize(bodies.ids.size());
+    body_at_.resize(bodies.slots());
+    living_.clear();
+    for (std::uint32_t body = 0; body < bodies.ids.size(); ++body) {
+        const std::uint32_t index = bodies.ids[body].index;
+        living_.push_back(index);
+        index_of_[body] = index;
+        body_at_[index] = body;
+        Flight& flight = flights_[body];
+        flight.position_m = bodies.position_m[index];
+        flight.velocity_mps = bodies.velocity_mps[index];
+        flight.radius_m = bodies.radius_m[index];
+        prospects_[body].mass_kg = bodies.mass_kg[index];
+        prospects_[body].hit_s = -std::numeric_limits<double>::infinity();
     }
     if (model_.periodic) {
         choose<true, false, false>();
@@ -75,7 +78,8 @@ template <typename Scalar>
 void Coasting<Scalar>::fit_cells() {
     sample_m_.clear();
     Scalar radius = Scalar(0), coordinate = Scalar(0);
-    for (const std::uint32_t body : living_) {
+    for (const std::uint32_t index : living_) {
+        const std::uint32_t body = body_at_[index];
         sample_m_.push_back(position_m(body));
         radius = std::max(radius, flights_[body].radius_m);
         coordinate = std::max(coordinate, sample_m_.back().cwiseAbs().maxCoeff());
@@ -84,17 +88,20 @@ void Coasting<Scalar>::fit_cells() {
     const Scalar width = Scalar(2) * radius * static_cast<Scalar>(1.0 + kCellRoom) +
                          static_cast<Scalar>(kCellRoundOff) * round_off;
     cells_.fit(sample_m_, width, model_.periodic ? model_.periodic : model_.walls,
-               model_.periodic.has_value());
+               model_.periodic.has_value(), static_cast<std::uint32_t>(flights_.size()));
     turns_to_rebase_ = std::max(kRebaseEvery, static_cast<std::uint32_t>(living_.size()));
-    // Of each pair the later one is answerable.
-    for (const std::uint32_t body : living_) {
-        Flight& flight = flights_[body];
+    for (std::uint32_t body = 0; body < flights_.size(); ++body) {
         const Vec position = position_m(body);
         for (std::uint32_t axis = 0; axis < 2; ++axis) {
-            flight.cell[axis] = cells_.cell_of(axis, position[axis]);
+            flights_[body].cell[axis] = cells_.cell_of(axis, position[axis]);
         }
+    }
+    renumber();
+    // Of each pair the later one is answerable.
+    for (const std::uint32_t index : living_) {
+        const std::uint32_t body = body_at_[index];
         predict(body);
-        link(body);
+        cells_.put_in(body, flights_[body].cell[0], flights_[body].cell[1]);
     }
 }
 
@@ -118,7 +125,13 @@ void Coasting<Scalar>::break_span() {
 
 template <typename Scalar>
 Vec2<Scalar> Coasting<Scalar>::separation_m(std::uint32_t a, std::uint32_t b) const {
-    return nearest_image<Scalar>(position_m(a) - position_m(b), model_.periodic);
+    Vec apart_m = position_m(a) - position_m(b);
+    // What is nearer than that has no nearer image.
+    const auto is_near = [&](int axis) {
+        return std::abs(apart_m[axis]) < Scalar(0.25) * extent_m_[axis];
+    };
+    if (is_near(0) && is_near(1)) return apart_m;
+    return nearest_image<Scalar>(apart_m, model_.periodic);
 }
 
 template <typename Scalar>
@@ -155,6 +168,7 @@ void Coasting<Scalar>::keep_apart(std::uint32_t a, std::uint32_t b) {
     if (model_.periodic) {
         const Vec apart_m = position_m(a) - position_m(b);
         const auto boxes = [&](int axis) {
+            if (std::abs(apart_m[axis]) < Scalar(0.25) * extent_m_[axis]) return 0U;
             const Scalar count = std::round(apart_m[axis] / extent_m_[axis]);
             return static_cast<std::uint32_t>(static_cast<std::int32_t>(count));
         };
@@ -202,33 +216,17 @@ bool Coasting<Scalar>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image im
 
 template <typename Scalar>
 void Coasting<Scalar>::remove(std::uint32_t body) {
-    unlink(body);
+    cells_.take_out(body, flights_[body].cell[0], flights_[body].cell[1]);
     forget_apart(body);
-    calendar_.remove(body);
+    calendar_.remove(index_of_[body]);
     ++flights_[body].events;
-    living_.erase(std::lower_bound(living_.begin(), living_.end(), body));
-}
-
-template <typename Scalar>
-void Coasting<Scalar>::link(std::uint32_t body) {
-    Flight& flight = flights_[body];
-    std::uint32_t& first = cells_.first(flight.cell[0], flight.cell[1]);
-    flight.next = first;
-    first = body;
-}
-
-template <typename Scalar>
-void Coasting<Scalar>::unlink(std::uint32_t body) {
-    const Flight& flight = flights_[body];
-    std::uint32_t* at = &cells_.first(flight.cell[0], flight.cell[1]);
-    while (*at != body) at = &flights_[*at].next;
-    *at = flight.next;
+    living_.erase(std::lower_bound(living_.begin(), living_.end(), index_of_[body]));
 }
 
 template <typename Scalar>
 void Coasting<Scalar>::enter_in_calendar(std::uint32_t body) {
     const Prospect& prospect = prospects_[body];
-    calendar_.set(body, std::min(prospect.meeting_s, prospect.border_s));
+    calendar_.set(index_of_[body], std::min(prospect.meeting_s, prospect.border_s));
 }
 
 template <typename Scalar>
@@ -237,7 +235,7 @@ void Coasting<Scalar>::rebase() {
     // The greatest power of two that is not above now.
     constexpr std::uint64_t kExponent = 0x7ff0000000000000;
     const double shift_s = std::bit_cast<double>(std::bit_cast<std::uint64_t>(now_s_) & kExponent);
-    for (const std::uint32_t body : living_) {
+    for (std::uint32_t body = 0; body < flights_.size(); ++body) {
         flights_[body].since_s -= shift_s;
         prospects_[body].meeting_s -= shift_s;
         prospects_[body].border_s -= shift_s;
@@ -247,22 +245,31 @@ void Coasting<Scalar>::rebase() {
     now_s_ -= shift_s;
     begin_s_ -= shift_s;
     end_s_ -= shift_s;
+    if (rebases_to_renumber_-- == 0) {
+        renumber();
+        cells_.clear();
+        for (const std::uint32_t index : living_) {
+            const Flight& flight = flights_[body_at_[index]];
+            cells_.put_in(body_at_[index], flight.cell[0], flight.cell[1]);
+        }
+    }
     if (model_.periodic) return;
     sample_m_.clear();
     const std::size_t stride = living_.size() / kCellSample + 1;
     for (std::size_t i = 0; i < living_.size(); i += stride) {
-        sample_m_.push_back(position_m(living_[i]));
+        sample_m_.push_back(position_m(body_at_[living_[i]]));
     }
     if (!cells_.still_suits(sample_m_)) fit_cells();
 }
 
 template <typename Scalar>
 void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
-    for (const std::uint32_t body : living_) {
-        const Vec position = position_m(body);
-        bodies.position_m[body] =
+    for (const std::uint32_t index : living_) {
+        const Flight& flight = flights_[body_at_[index]];
+        const Vec position = flight.position_at(now_s_);
+        bodies.position_m[index] =
             model_.periodic ? wrapped<Scalar>(position, *model_.periodic) : position;
-        bodies.velocity_mps[body] = flights_[body].velocity_mps;
+        bodies.velocity_mps[index] = flight.velocity_mps;
     }
 }
 
@@ -270,27 +277,27 @@ template <typename Scalar>
 template <typename Has>
 Due Coasting<Scalar>::next_as() {
     for (;;) {
-        const Calendar::Entry first = calendar_.top();
+        const BucketCalendar::Entry first = calendar_.top();
         if (!(first.time_s <= end_s_)) return {};
         if (turns_left_ == 0) return {Happening::kUnfinished, now_s_, 0, 0};
         --turns_left_;
-        const Prospect& prospect = prospects_[first.body];
+        const std::uint32_t body = body_at_[first.body];
+        const Prospect& prospect = prospects_[body];
         if (prospect.meeting_s <= prospect.border_s) {
             if (holds(prospect)) {
-                return {Happening::kMeeting, first.time_s, first.body, prospect.with};
+                return {Happening::kMeeting, first.time_s, body, prospect.with};
             }
             advance_to(first.time_s);
-            expect_meeting<Has>(first.body);
-            enter_in_calendar(first.body);
+            expect_meeting<Has>(body);
+            enter_in_calendar(body);
             settle();
         } else if (prospect.border == Border::kCell) {
             advance_to(first.time_s);
-            cross<Has>(first.body);
+            cross<Has>(body);
             settle();
         } else {
             const bool falls = Has::kPlatform && prospect.border == Border::kFall;
-            return {falls ? Happening::kFall : Happening::kWall, first.time_s, first.body,
-                    prospect.side};
+            return {falls ? Happening::kFall : Happening::kWall, first.time_s, body, prospect.side};
         }
     }
 }
@@ -321,69 +328,67 @@ void Coasting<Scalar>::expect(std::uint32_t body, const Meeting& meeting) {
 
 template <typename Scalar>
 template <typename Has>
-void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) const {
-    const Flight& self = flights_[body];
-    if constexpr (Has::kPeriodic) {
-        if (is_at_border(self)) {
-            for_each_cell_across(self, view, [&](std::uint32_t first, Image image) {
-                look_into<Has, true>(first, body, image, best);
-            });
-            return;
-        }
-    }
-    const std::uint32_t* row =
-        cells_.corner_of(self.cell[0], self.cell[1]) + view.y0 * cells_.stride();
-    for (std::uint32_t y = view.y0; y <= view.y1; ++y, row += cells_.stride()) {
-        for (std::uint32_t x = view.x0; x <= view.x1; ++x) {
-            if (row[x] != kNobody) look_into<Has, false>(row[x], body, Image(), best);
-        }
-    }
+void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) {
+    const auto look_here = [&](std::uint32_t* end, Image image) {
+        look_at<Has>(end, body, image, best);
+    };
+    find<Has::kPeriodic>(flights_[body], view, look_here);
 }
 
 template <typename Scalar>
-template <typename Has, bool kAcross>
-void Coasting<Scalar>::look_into(std::uint32_t first, std::uint32_t body, Image image,
-                                 Meeting& best) const {
-    constexpr Scalar kSlack =
-        Scalar(1) + static_cast<Scalar>(kFilterSlack) * std::numeric_limits<Scalar>::epsilon();
+template <typename Has>
+void Coasting<Scalar>::look_at(std::uint32_t* end, std::uint32_t body, Image image, Meeting& best) {
+    const Filter<Scalar> filter{flights_.data(), flights_[body],   body,     kNobody,
+                                shift_of(image), Has::kEqualRadii, Scalar(0)};
+    const auto passed = filter(found_.data(), end);
+    for (const std::uint32_t* at = found_.data(); at != passed.end; ++at) {
+        const Flight& it = flights_[*at];
+        const Scalar reach_m = filter.self.radius_m + it.radius_m;
+        consider(body, *at, image, {filter.self, it, filter.shift_m}, reach_m, best);
+    }
+}
+
+// Whether two that may meet do so before the best that is known.
+template <typename Scalar>
+void Coasting<Scalar>::consider(std::uint32_t body, std::uint32_t other, Image image,
+                                const Approach<Scalar>& approach, Scalar reach_m,
+                                Meeting& best) const {
     constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
     constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
-    const Flight self = flights_[body];
-    for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
-        const Flight& it = flights_[other];
-        const double from_s = std::max(self.since_s, it.since_s);
-        Vec apart = position_at(self, from_s) - position_at(it, from_s);
-        if constexpr (kAcross) {
-            apart.x() -= extent_m_.x() * static_cast<Scalar>(image.x);
-            apart.y() -= extent_m_.y() * static_cast<Scalar>(image.y);
-        }
-        const Vec velocity = self.velocity_mps - it.velocity_mps;
-        const Scalar rate = apart.dot(velocity);
-        if (!(rate < Scalar(0))) continue;
-        const Scalar reach =
-            Has::kEqualRadii ? Scalar(2) * self.radius_m : self.radius_m + it.radius_m;
-        const Scalar reach_squared = reach * reach;
-        const Scalar aside = apart.x() * velocity.y() - apart.y() * velocity.x();
-        if (aside * aside >
-            kSlack * reach_squared * velocity.squaredNorm() + std::numeric_limits<Scalar>::min()) {
-            continue;
-        }
-        // It takes at least the time of a head-on approach.
-        const Scalar known_best = static_cast<Scalar>(best.time_s - from_s);
-        if (apart.squaredNorm() - reach_squared > Scalar(-2) * kSlack * rate * known_best) continue;
-        const double time_s = std::max(
-            now_s_,
-            from_s + static_cast<double>(time_until_contact<Scalar>(apart, velocity, reach)));
-        if (time_s > best.time_s || (time_s == best.time_s && other >= best.with)) continue;
-        if (is_immovable(body) && is_immovable(other)) continue;
-        // Those kept apart touch when they are left together, and approach by round-off only.
-        if (apart.squaredNorm() < kNear * reach_squared ||
-            rate * rate < kBarely * apart.squaredNorm() *
-                              (self.velocity_mps.squaredNorm() + it.velocity_mps.squaredNorm())) {
-            if (are_kept_apart(body, other, image)) continue;
-        }
-        best = {time_s, other};
+    const Scalar reach_squared = reach_m * reach_m, rate = approach.rate();
+    const Scalar apart_squared = approach.distance_squared();
+    // It takes at least the time of a head-on approach.
+    const Scalar known_best = static_cast<Scalar>(best.time_s - approach.from_s);
+    if (apart_squared - reach_squared > Scalar(-2) * kFilterSlack<Scalar> * rate * known_best) {
+        return;
     }
+    const Scalar wait_s = time_until_contact<Scalar>({approach.x_m, approach.y_m},
+                                                     {approach.x_mps, approach.y_mps}, reach_m);
+    const double time_s = std::max(now_s_, approach.from_s + static_cast<double>(wait_s));
+    if (time_s > best.time_s || (time_s == best.time_s && !is_before(other, best.with))) return;
+    if (is_immovable(body) && is_immovable(other)) return;
+    // Those kept apart touch when they are left together, and approach by round-off only.
+    if (apart_squared < kNear * reach_squared ||
+        rate * rate < kBarely * apart_squared *
+                          (flights_[body].velocity_mps.squaredNorm() +
+                           flights_[other].velocity_mps.squaredNorm())) {
+        if (are_kept_apart(body, other, image)) return;
+    }
+    best = {time_s, other};
+}
+
+template <typename Scalar>
+bool Coasting<Scalar>::has_about(std::uint32_t body, std::uint32_t partner, Scalar factor) {
+    Flight self = flights_[body];
+    self.position_m = position_m(body);
+    self.since_s = now_s_;
+    bool has = false;
+    find<true>(self, View(), [&](std::uint32_t* end, Image image) {
+        const Filter<Scalar> filter{flights_.data(),    self,  body, partner, shift_of(image),
+                                    model_.equal_radii, factor};
+        has |= filter(found_.data(), end).any_close;
+    });
+    return has;
 }
 
 template <typename Scalar>
@@ -431,13 +436,13 @@ void Coasting<Scalar>::cross(std::uint32_t body) {
     const std::uint32_t axis = prospect.side / 2;
     const bool up = prospect.side % 2 == 1;
     const bool knows_meeting = holds(prospect);
-    unlink(body);
+    cells_.take_out(body, flight.cell[0], flight.cell[1]);
     if (Has::kPeriodic && flight.cell[axis] == (up ? cells_.last(axis) : 0)) {
         go_round(body, axis, up);
     } else {
         up ? ++flight.cell[axis] : --flight.cell[axis];
     }
-    link(body);
+    cells_.put_in(body, flight.cell[0], flight.cell[1]);
     if (knows_meeting) {
         View view;
         (axis == 0 ? view.x0 : view.y0) = up ? 2 : 0;

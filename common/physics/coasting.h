@@ -17,6 +17,10 @@
 // kept apart: they are not predicted to meet again before something happens to one of them. In a
 // periodic scene this is said of one image, and they may meet through another.
 //
+// Bodies are numbered here in the order of their places, so that those who are near each other are
+// near in memory too: `body` is such a number, `index_of` says who that is. What happens, and in
+// which order, does not depend on it.
+//
 // Time is double, whatever the scalar, and counted from an epoch that moves on: see kRebaseEvery.
 #pragma once
 
@@ -26,8 +30,9 @@
 #include <vector>
 
 #include "common/physics/bodies.h"
-#include "common/physics/calendar.h"
+#include "common/physics/bucket_calendar.h"
 #include "common/physics/event_cells.h"
+#include "common/physics/flight_filter.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
@@ -37,6 +42,9 @@ namespace fts::physics {
 // some of the cells, so that times are as fine as positions are, for any number of collisions. It
 // moves by powers of two, so that times to come stay exact.
 inline constexpr std::uint32_t kRebaseEvery = 64;
+
+// Bodies are numbered anew after so many times, while most are not far from where they were.
+inline constexpr std::uint32_t kRenumberEvery = 32;
 
 enum class Happening : std::uint8_t {
     kNothing,     // before the end of the span
@@ -57,19 +65,8 @@ template <typename Scalar>
 class Coasting {
   public:
     using Vec = Vec2<Scalar>;
+    using Flight = physics::Flight<Scalar>;
     static constexpr std::uint32_t kNobody = EventCells<Scalar>::kNobody;
-
-    // What must be read of a body to predict others.
-    struct alignas(64) Flight {
-        Vec position_m = Vec::Zero();  // at `since_s`
-        Vec velocity_mps = Vec::Zero();
-        double since_s = 0.0;
-        Scalar radius_m = Scalar(0);
-        std::uint32_t next = kNobody;  // in its cell
-        std::uint32_t events = 0;
-        std::uint32_t cell[2] = {0, 0};
-    };
-    static_assert(sizeof(Flight) == 64);
 
     // Takes over all living bodies, and predicts.
     void begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model);
@@ -94,9 +91,11 @@ class Coasting {
     double flown_s(std::uint32_t body) const { return now_s_ - flights_[body].since_s; }
     double last_hit_ago_s(std::uint32_t body) const { return now_s_ - prospects_[body].hit_s; }
 
+    std::uint32_t index_of(std::uint32_t body) const { return index_of_[body]; }
+    std::uint32_t body_at(std::uint32_t index) const { return body_at_[index]; }
     const Flight& flight(std::uint32_t body) const { return flights_[body]; }
     Scalar mass_kg(std::uint32_t body) const { return prospects_[body].mass_kg; }
-    Vec position_m(std::uint32_t body) const { return position_at(flights_[body], now_s_); }
+    Vec position_m(std::uint32_t body) const { return flights_[body].position_at(now_s_); }
     // From b, or its nearest image, to a; now.
     Vec separation_m(std::uint32_t a, std::uint32_t b) const;
 
@@ -114,10 +113,14 @@ class Coasting {
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
+    // Whether the distance of any other body but `partner` to `body`, now, is below `factor` times
+    // their reach. No, only of those in the cells about it: `factor` is hardly more than 1.
+    bool has_about(std::uint32_t body, std::uint32_t partner, Scalar factor);
     // Calls visit(other, separation) for every body in the cells about that of `body`, itself
-    // included, once for each image; the separation is from that image to `body`, now.
+    // included, once for each image, in ascending order of indices; the separation is from that
+    // image to `body`, now.
     template <typename Visit>
-    void for_each_near(std::uint32_t body, Visit&& visit) const;
+    void for_each_near(std::uint32_t body, Visit&& visit);
 
     void write_to(Bodies<Scalar>& bodies) const;
 
@@ -151,6 +154,16 @@ class Coasting {
     };
     struct Image {  // of a neighbour: so many boxes away
         int x = 0, y = 0;
+        friend auto operator<=>(const Image&, const Image&) = default;
+    };
+    struct InCell {
+        std::uint32_t row = 0, column = 0, body = 0;
+        friend auto operator<=>(const InCell&, const InCell&) = default;
+    };
+    struct Near {
+        std::uint32_t index = kNobody;
+        Image image;
+        friend auto operator<=>(const Near&, const Near&) = default;
     };
     // Of the nine cells about a body's own, counted from the lowest corner.
     struct View {
@@ -167,14 +180,16 @@ class Coasting {
     template <bool kPeriodic, bool kWalls, bool kPlatform>
     void choose();
     void fit_cells();
-    void link(std::uint32_t body);
-    void unlink(std::uint32_t body);
+    void renumber();
     void forget_apart(std::uint32_t body);
     bool are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const;
     bool holds(const Prospect& prospect) const {
         return prospect.with == kNobody || flights_[prospect.with].events == prospect.with_events;
     }
     void rebase();
+    bool is_before(std::uint32_t body, std::uint32_t other) const {
+        return other == kNobody || index_of_[body] < index_of_[other];
+    }
     void enter_in_calendar(std::uint32_t body);
 
     template <typename Has>
@@ -186,9 +201,12 @@ class Coasting {
     template <typename Has>
     void expect_border(std::uint32_t body);
     template <typename Has>
-    void look(std::uint32_t body, const View& view, Meeting& best) const;
-    template <typename Has, bool kAcross>
-    void look_into(std::uint32_t first, std::uint32_t body, Image image, Meeting& best) const;
+    void look(std::uint32_t body, const View& view, Meeting& best);
+    // At those in found_, up to `end`.
+    template <typename Has>
+    void look_at(std::uint32_t* end, std::uint32_t body, Image image, Meeting& best);
+    void consider(std::uint32_t body, std::uint32_t other, Image image,
+                  const Approach<Scalar>& approach, Scalar reach_m, Meeting& best) const;
     template <typename Has>
     void cross(std::uint32_t body);
     void expect(std::uint32_t body, const Meeting& meeting);
@@ -199,15 +217,16 @@ class Coasting {
         };
         return !is_inside(0) || !is_inside(1);
     }
-    // Calls visit(first body, image) for every cell of the view, in a periodic box.
-    template <typename Visit>
-    void for_each_cell_across(const Flight& self, const View& view, Visit&& visit) const;
-
-    static Vec position_at(const Flight& flight, double time_s) {
-        const Scalar since = static_cast<Scalar>(time_s - flight.since_s);
-        return {flight.position_m.x() + flight.velocity_mps.x() * since,
-                flight.position_m.y() + flight.velocity_mps.y() * since};
+    Vec shift_of(Image image) const {
+        return {extent_m_.x() * static_cast<Scalar>(image.x),
+                extent_m_.y() * static_cast<Scalar>(image.y)};
     }
+    // Fills found_ and calls visit(end of it, image), at once for all cells of the view, but in a
+    // periodic box at whose border the body is: there for each cell.
+    template <bool kMayBePeriodic, typename Visit>
+    void find(const Flight& self, const View& view, Visit&& visit);
+    template <typename Visit>
+    void find_across(const Flight& self, const View& view, Visit&& visit);
 
     Model<Scalar> model_;
     Vec extent_m_ = Vec::Zero();  // of the periodic box
@@ -220,40 +239,56 @@ class Coasting {
 
     std::vector<Flight> flights_;  // by body, as are the next
     std::vector<Prospect> prospects_;
-    std::vector<std::uint32_t> living_;  // ascending
+    std::vector<std::uint32_t> index_of_;
+    std::vector<std::uint32_t> body_at_;  // by index, as is the calendar
+    std::vector<std::uint32_t> living_;   // indices, ascending
+    std::uint32_t rebases_to_renumber_ = 0;
+    std::vector<InCell> places_;  // by renumber, as are the next
+    std::vector<Flight> old_flights_;
+    std::vector<Prospect> old_prospects_;
+    std::vector<std::uint32_t> new_body_;
     std::vector<Apart> apart_;
     std::uint32_t free_apart_ = kNobody;
-    Calendar calendar_;
+    BucketCalendar calendar_;
     EventCells<Scalar> cells_;
+    std::vector<std::uint32_t> found_;  // by cells_.find
+    std::vector<Near> near_;
     std::vector<Vec> sample_m_;
 };
 
 template <typename Scalar>
 template <typename Visit>
-void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) const {
+void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
+    near_.clear();
+    find<true>(flights_[body], View(), [&](const std::uint32_t* end, Image image) {
+        for (const std::uint32_t* at = found_.data(); at != end; ++at)
+            near_.push_back({index_of_[*at], image});
+    });
+    std::sort(near_.begin(), near_.end());
     const Vec position = position_m(body);
-    const auto visit_all = [&](std::uint32_t first, Image image) {
-        const Vec shift(extent_m_.x() * static_cast<Scalar>(image.x),
-                        extent_m_.y() * static_cast<Scalar>(image.y));
-        for (std::uint32_t other = first; other != kNobody; other = flights_[other].next) {
-            visit(other, Vec((position - position_m(other)) - shift));
-        }
-    };
-    const Flight& self = flights_[body];
-    if (model_.periodic && is_at_border(self)) {
-        for_each_cell_across(self, View(), visit_all);
-        return;
-    }
-    const std::uint32_t* row = cells_.corner_of(self.cell[0], self.cell[1]);
-    for (std::uint32_t y = 0; y < 3; ++y, row += cells_.stride()) {
-        for (std::uint32_t x = 0; x < 3; ++x) visit_all(row[x], Image());
+    for (const auto& [index, image] : near_) {
+        const std::uint32_t other = body_at_[index];
+        visit(other, Vec((position - position_m(other)) - shift_of(image)));
     }
 }
 
 template <typename Scalar>
+template <bool kMayBePeriodic, typename Visit>
+void Coasting<Scalar>::find(const Flight& self, const View& view, Visit&& visit) {
+    if (kMayBePeriodic && model_.periodic && is_at_border(self)) {
+        find_across(self, view, visit);
+        return;
+    }
+    std::uint32_t* end = found_.data();
+    for (std::uint32_t y = view.y0; y <= view.y1; ++y) {
+        end = cells_.find(self.cell[0] + view.x0, self.cell[1] + y, view.x1 - view.x0 + 1, end);
+    }
+    visit(end, Image());
+}
+
+template <typename Scalar>
 template <typename Visit>
-void Coasting<Scalar>::for_each_cell_across(const Flight& self, const View& view,
-                                            Visit&& visit) const {
+void Coasting<Scalar>::find_across(const Flight& self, const View& view, Visit&& visit) {
     struct Place {
         std::uint32_t cell;
         int image;
@@ -268,9 +303,39 @@ void Coasting<Scalar>::for_each_cell_across(const Flight& self, const View& view
         const Place row = place(1, y);
         for (std::uint32_t x = view.x0; x <= view.x1; ++x) {
             const Place column = place(0, x);
-            visit(cells_.first(column.cell, row.cell), Image{column.image, row.image});
+            std::uint32_t* const end = cells_.find(column.cell + 1, row.cell + 1, 1, found_.data());
+            if (end != found_.data()) visit(end, Image{column.image, row.image});
         }
     }
+}
+
+// In the order of their cells. To be put into these is left to the caller.
+template <typename Scalar>
+void Coasting<Scalar>::renumber() {
+    rebases_to_renumber_ = kRenumberEvery;
+    const auto bodies = static_cast<std::uint32_t>(flights_.size());
+    places_.clear();
+    for (std::uint32_t body = 0; body < bodies; ++body) {
+        places_.push_back({flights_[body].cell[1], flights_[body].cell[0], body});
+    }
+    std::sort(places_.begin(), places_.end());
+    old_flights_ = flights_;
+    old_prospects_ = prospects_;
+    new_body_.resize(bodies);
+    for (std::uint32_t body = 0; body < bodies; ++body) {
+        const std::uint32_t old_body = places_[body].body;
+        new_body_[old_body] = body;
+        flights_[body] = old_flights_[old_body];
+        prospects_[body] = old_prospects_[old_body];
+        places_[body].body = index_of_[old_body];
+    }
+    for (std::uint32_t body = 0; body < bodies; ++body) {
+        index_of_[body] = places_[body].body;
+        body_at_[index_of_[body]] = body;
+        std::uint32_t& with = prospects_[body].with;
+        if (with != kNobody) with = new_body_[with];
+    }
+    for (Apart& apart : apart_) apart.other = new_body_[apart.other];
 }
 
 extern template class Coasting<double>;

@@ -1,7 +1,12 @@
 #include "common/physics/event_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "common/physics/crowd_range.h"
 
@@ -12,6 +17,23 @@ namespace {
 // moved by this part of its extent.
 constexpr double kSpread = 1.5;
 constexpr double kMoved = 0.25;
+
+// All places are copied, and the vacant ones written over next. Bodies are below 2^31.
+template <typename Cell>
+std::uint32_t* copy_places(const Cell& cell, std::uint32_t* to) {
+#if defined(__SSE2__)
+    const __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(cell.place));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), all);
+    const auto vacant = static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(all)));
+    return to + std::countr_zero(vacant | 0x10U);
+#else
+    for (const std::uint32_t body : cell.place) {
+        *to = body;
+        to += body >> 31 == 0 ? 1 : 0;
+    }
+    return to;
+#endif
+}
 
 }  // namespace
 
@@ -41,7 +63,7 @@ void EventCells<Scalar>::divide(Axis& axis, const Range& range, Scalar width_m,
 template <typename Scalar>
 void EventCells<Scalar>::fit(std::span<const Vec2<Scalar>> positions_m, Scalar least_width_m,
                              const std::optional<typename Model<Scalar>::Box>& bounds,
-                             bool periodic) {
+                             bool periodic, std::uint32_t slots) {
     Range range[2];
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
         axis_[axis].fitted = range[axis] = range_of(axis, positions_m);
@@ -59,7 +81,66 @@ void EventCells<Scalar>::fit(std::span<const Vec2<Scalar>> positions_m, Scalar l
         divide(axis_[axis], range[axis], width, positions_m.size());
     }
     stride_ = axis_[0].last + 3;
-    first_.assign(std::size_t{stride_} * (axis_[1].last + 3), kNobody);
+    const std::size_t cells = std::size_t{stride_} * (axis_[1].last + 3);
+    cells_.resize(cells);
+    next_.resize(slots);
+    clear();
+}
+
+template <typename Scalar>
+void EventCells<Scalar>::clear() {
+    std::fill(cells_.begin(), cells_.end(), Cell{{kNobody, kNobody, kNobody, kNobody}});
+}
+
+template <typename Scalar>
+void EventCells<Scalar>::put_in(std::uint32_t body, std::uint32_t x, std::uint32_t y) {
+    Cell& cell = cells_[index_of(x + 1, y + 1)];
+    for (std::uint32_t& place : cell.place) {
+        if (place != kNobody) continue;
+        place = body;
+        return;
+    }
+    std::uint32_t& last = cell.place[kPlaces - 1];
+    if (!has_list(cell)) next_[last] = kNobody;
+    next_[body] = last & ~kListed;
+    last = kListed | body;
+}
+
+template <typename Scalar>
+void EventCells<Scalar>::take_out(std::uint32_t body, std::uint32_t x, std::uint32_t y) {
+    Cell& cell = cells_[index_of(x + 1, y + 1)];
+    std::uint32_t at = 0;
+    while (at < kPlaces && cell.place[at] != body) ++at;
+    if (!has_list(cell)) {
+        for (; at + 1 < kPlaces; ++at) cell.place[at] = cell.place[at + 1];
+        cell.place[kPlaces - 1] = kNobody;
+        return;
+    }
+    std::uint32_t first = cell.place[kPlaces - 1] & ~kListed;
+    if (at < kPlaces) {
+        cell.place[at] = first;
+        first = next_[first];
+    } else {
+        std::uint32_t* link = &first;
+        while (*link != body) link = &next_[*link];
+        *link = next_[body];
+    }
+    cell.place[kPlaces - 1] = next_[first] == kNobody ? first : kListed | first;
+}
+
+template <typename Scalar>
+std::uint32_t* EventCells<Scalar>::find(std::uint32_t x, std::uint32_t y, std::uint32_t columns,
+                                        std::uint32_t* found) const {
+    const Cell* cell = cells_.data() + index_of(x, y);
+    for (const Cell* const end = cell + columns; cell != end; ++cell) {
+        found = copy_places(*cell, found);
+        if (!has_list(*cell)) continue;
+        for (std::uint32_t body = cell->place[kPlaces - 1] & ~kListed; body != kNobody;
+             body = next_[body]) {
+            *found++ = body;
+        }
+    }
+    return found;
 }
 
 template <typename Scalar>

@@ -1,6 +1,7 @@
 // The cells in which bodies in straight flight are looked up: a uniform grid whose cells are at
 // least as wide as the largest disc, so that two discs that touch are in the same cell or in
-// neighbouring ones. Lists of bodies are linked through the bodies themselves.
+// neighbouring ones. A cell has places for a few bodies, next to those of the cells beside it, so
+// that a look around reads three short rows; where more come together they are in a list besides.
 //
 // In an open scene the border cells extend to infinity; the grid covers where most bodies are, and
 // has no more cells than there are bodies. In a periodic one it covers the box, and the columns
@@ -23,13 +24,16 @@ class EventCells {
     static constexpr std::uint32_t kNobody = 0xffffffff;
 
     // Makes empty cells, at least `least_width_m` wide, that suit bodies at `positions_m`; the
-    // bounds of what is bounded, and whether opposite sides are one.
+    // bounds of what is bounded, and whether opposite sides are one. `slots` is above every body's
+    // index.
     void fit(std::span<const Vec2<Scalar>> positions_m, Scalar least_width_m,
-             const std::optional<typename Model<Scalar>::Box>& bounds, bool periodic);
+             const std::optional<typename Model<Scalar>::Box>& bounds, bool periodic,
+             std::uint32_t slots);
 
     // Whether bodies have spread, gathered or moved on so much that other cells would suit them.
     bool still_suits(std::span<const Vec2<Scalar>> sample_m);
 
+    // Where (among `last() + 1`) along an axis a coordinate is.
     std::uint32_t cell_of(std::uint32_t axis, Scalar x_m) const;
     std::uint32_t last(std::uint32_t axis) const { return axis_[axis].last; }
     // Where cell `index` begins, and the one below it ends.
@@ -37,20 +41,29 @@ class EventCells {
         return axis_[axis].origin_m + axis_[axis].width_m * static_cast<Scalar>(index);
     }
 
-    // The first body of a cell. Around the grid is a ring of cells in which nobody ever is: the
-    // cells of three rows about (x, y) begin at corner(x, y), corner(x, y) + stride() and so on.
-    std::uint32_t& first(std::uint32_t x, std::uint32_t y) {
-        return first_[corner(x, y) + stride_ + 1];
-    }
-    std::uint32_t first(std::uint32_t x, std::uint32_t y) const {
-        return first_[corner(x, y) + stride_ + 1];
-    }
-    const std::uint32_t* corner_of(std::uint32_t x, std::uint32_t y) const {
-        return first_.data() + corner(x, y);
-    }
-    std::uint32_t stride() const { return stride_; }
+    // Nobody is in any cell.
+    void clear();
+    // A body that is in no cell comes into one, or leaves the one it is in.
+    void put_in(std::uint32_t body, std::uint32_t x, std::uint32_t y);
+    void take_out(std::uint32_t body, std::uint32_t x, std::uint32_t y);
+
+    // Those in `columns` <= 3 cells from (x, y) on, in no order. `found` has room for them, and for
+    // kSpare more that are written over. Returns one past the last.
+    //
+    // Around the grid is a ring of cells in which nobody ever is: coordinates are counted from
+    // there, which makes them one more than those of `cell_of`.
+    static constexpr std::uint32_t kSpare = 4;
+    std::uint32_t* find(std::uint32_t x, std::uint32_t y, std::uint32_t columns,
+                        std::uint32_t* found) const;
 
   private:
+    static constexpr std::uint32_t kPlaces = 4;
+    // Vacant places hold kNobody, and are the last ones. Where more come together than there are
+    // places, the last place holds kListed and the first of a list of at least two.
+    static constexpr std::uint32_t kListed = 0x80000000;
+    struct Cell {
+        std::uint32_t place[kPlaces];
+    };
     struct Range {
         Scalar low_m = Scalar(0), high_m = Scalar(0);
     };
@@ -62,7 +75,10 @@ class EventCells {
         Range fitted;
     };
 
-    std::size_t corner(std::uint32_t x, std::uint32_t y) const {
+    static bool has_list(const Cell& cell) {
+        return cell.place[kPlaces - 1] >= kListed && cell.place[kPlaces - 1] != kNobody;
+    }
+    std::size_t index_of(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{y} * stride_ + x;
     }
     Range range_of(std::uint32_t axis, std::span<const Vec2<Scalar>> positions_m);
@@ -70,7 +86,8 @@ class EventCells {
 
     std::array<Axis, 2> axis_;
     std::uint32_t stride_ = 3;
-    std::vector<std::uint32_t> first_;
+    std::vector<Cell> cells_;
+    std::vector<std::uint32_t> next_;  // by body, in such a list
     std::vector<Scalar> scratch_;
 };
 

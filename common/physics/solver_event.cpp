@@ -34,7 +34,8 @@ class EventSolver final : public Solver<Scalar> {
         std::uint32_t a, b;
     };
 
-    // These return how many events they were.
+    // Bodies are numbered as in coasting_, but in together_ as in Bodies. These return how many
+    // events they were.
     std::uint32_t process(const Due& due);
     std::uint32_t meet(std::uint32_t a, std::uint32_t b);
     std::uint32_t hit_wall(std::uint32_t body, std::uint32_t side);
@@ -43,14 +44,16 @@ class EventSolver final : public Solver<Scalar> {
 
     void touch(std::uint32_t a, std::uint32_t b, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
-    bool touches_another(std::uint32_t body, std::uint32_t partner) const;
+    bool touches_another(std::uint32_t body, std::uint32_t partner);
     bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
     bool touches_wall(std::uint32_t body, std::uint32_t side) const;
     Scalar extent_m(std::uint32_t body) const;
     void gather_about(std::uint32_t body);
     void join(std::uint32_t body);
+    void touch_together(std::uint32_t a, std::uint32_t b);
     void show(std::uint32_t body);
 
+    BodyId id_of(std::uint32_t body) const { return bodies_->id_of(coasting_.index_of(body)); }
     Scalar time_in_step() const;
     bool was_just_hit(std::uint32_t body) const;
     Scalar restitution_of(bool just_hit) const {
@@ -127,7 +130,8 @@ std::uint32_t EventSolver<Scalar>::process(const Due& due) {
 // A grazing pair may turn out, to the last bit, not to approach any more; then nothing happens.
 template <typename Scalar>
 std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) {
-    const auto [a, b] = std::minmax(due, other);
+    const bool in_order = coasting_.index_of(due) < coasting_.index_of(other);
+    const std::uint32_t a = in_order ? due : other, b = in_order ? other : due;
     const Scalar slack_s = clock_slack_s(a, b);
     coasting_.move_to_now(a);
     coasting_.move_to_now(b);
@@ -149,12 +153,11 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
         return 0;
     }
     show(a);
-    const Vec position = bodies_->position_m[a];
-    record_->contacts.push_back({bodies_->id_of(a), bodies_->id_of(b), time_in_step(),
-                                 position - radius_a * hit->normal, hit->normal, hit->impulse_ns,
-                                 position, position - separation, velocity_a, hit->velocity_1_mps,
-                                 velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg,
-                                 depth});
+    const Vec position = bodies_->position_m[coasting_.index_of(a)];
+    record_->contacts.push_back(
+        {id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
+         hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
+         velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
     account(record_->contacts.back(), record_->audit);
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
@@ -179,7 +182,7 @@ std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t si
     normal[axis] = at_max ? Scalar(-1) : Scalar(1);
     const Scalar mass = coasting_.mass_kg(body);
     record_->contacts.push_back(
-        {bodies_->id_of(body), std::nullopt, time_in_step(), position - radius * normal, normal,
+        {id_of(body), std::nullopt, time_in_step(), position - radius * normal, normal,
          mass * std::abs(after[axis] - before[axis]), position, position - radius * normal, before,
          after, Vec::Zero(), Vec::Zero(), mass, std::numeric_limits<Scalar>::infinity()});
     account(record_->contacts.back(), record_->audit);
@@ -191,45 +194,51 @@ std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t si
 
 template <typename Scalar>
 std::uint32_t EventSolver<Scalar>::fall(std::uint32_t body) {
-    record_->falls.push_back({bodies_->id_of(body), time_in_step(), coasting_.position_m(body),
+    record_->falls.push_back({id_of(body), time_in_step(), coasting_.position_m(body),
                               coasting_.flight(body).velocity_mps});
     coasting_.remove(body);
-    bodies_->remove(body);
+    bodies_->remove(coasting_.index_of(body));
     return 1;
 }
 
 template <typename Scalar>
 std::uint32_t EventSolver<Scalar>::collide_together(const Due& due) {
+    const auto body_at = [&](std::uint32_t index) { return coasting_.body_at(index); };
     together_.begin(bodies_->slots());
     touching_.clear();
     join(due.body);
     if (due.what == Happening::kMeeting) {
         join(due.other);
-        touching_.push_back({due.body, due.other});
-        together_.touch(due.body, due.other, coasting_.separation_m(due.body, due.other));
+        touch_together(due.body, due.other);
     } else {
-        together_.touch_wall(due.body, due.other);
+        together_.touch_wall(coasting_.index_of(due.body), due.other);
     }
     const Resolution done = together_.resolve(
-        model_->restitution, [&](std::uint32_t body) { gather_about(body); },
+        model_->restitution, [&](std::uint32_t index) { gather_about(body_at(index)); },
         [&](std::span<const Hit<Scalar>> hits) {
             record_hits(*bodies_, time_in_step(), hits, *record_);
         });
     const auto hit_bodies = together_.hit_bodies();
-    for (const std::uint32_t body : hit_bodies) {
+    for (const std::uint32_t index : hit_bodies) {
+        const std::uint32_t body = body_at(index);
         if (!coasting_.is_immovable(body)) coasting_.move_to_now(body);
-        coasting_.turn(body, together_.velocity_mps(body));
+        coasting_.turn(body, together_.velocity_mps(index));
         for (std::uint32_t side = 0; side < 4; ++side) {
-            if (together_.keeps_off_wall(body, side)) coasting_.keep_off_wall(body, side);
+            if (together_.keeps_off_wall(index, side)) coasting_.keep_off_wall(body, side);
         }
     }
     for (const auto [a, b] : touching_) {
-        if (together_.keeps_apart(a, b, coasting_.separation_m(a, b))) coasting_.keep_apart(a, b);
+        if (together_.keeps_apart(coasting_.index_of(a), coasting_.index_of(b),
+                                  coasting_.separation_m(a, b))) {
+            coasting_.keep_apart(a, b);
+        }
     }
-    if (due.what == Happening::kWall && together_.keeps_off_wall(due.body, due.other)) {
+    if (due.what == Happening::kWall &&
+        together_.keeps_off_wall(coasting_.index_of(due.body), due.other)) {
         coasting_.keep_off_wall(due.body, due.other);
     }
-    for (const std::uint32_t body : hit_bodies) {
+    for (const std::uint32_t index : hit_bodies) {
+        const std::uint32_t body = body_at(index);
         if (body != due.body && !coasting_.is_immovable(body)) coasting_.predict(body);
     }
     coasting_.predict(due.body);
@@ -242,26 +251,31 @@ void EventSolver<Scalar>::gather_about(std::uint32_t body) {
         if (other == body || !are_touching(body, other, separation)) return;
         if (coasting_.is_immovable(body) && coasting_.is_immovable(other)) return;
         join(other);
-        touching_.push_back({body, other});
-        together_.touch(body, other, coasting_.separation_m(body, other));
+        touch_together(body, other);
     });
     for (std::uint32_t side = 0; side < 4; ++side) {
-        if (touches_wall(body, side)) together_.touch_wall(body, side);
+        if (touches_wall(body, side)) together_.touch_wall(coasting_.index_of(body), side);
     }
 }
 
 template <typename Scalar>
 void EventSolver<Scalar>::join(std::uint32_t body) {
-    together_.add(body, coasting_.flight(body).velocity_mps, coasting_.mass_kg(body),
-                  was_just_hit(body));
+    together_.add(coasting_.index_of(body), coasting_.flight(body).velocity_mps,
+                  coasting_.mass_kg(body), was_just_hit(body));
     show(body);
+}
+
+template <typename Scalar>
+void EventSolver<Scalar>::touch_together(std::uint32_t a, std::uint32_t b) {
+    touching_.push_back({a, b});
+    together_.touch(coasting_.index_of(a), coasting_.index_of(b), coasting_.separation_m(a, b));
 }
 
 // For the record: where the body is now.
 template <typename Scalar>
 void EventSolver<Scalar>::show(std::uint32_t body) {
     const Vec position = coasting_.position_m(body);
-    bodies_->position_m[body] =
+    bodies_->position_m[coasting_.index_of(body)] =
         model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
 }
 
@@ -291,9 +305,12 @@ Scalar EventSolver<Scalar>::clock_slack_s(std::uint32_t a, std::uint32_t b) cons
 }
 
 template <typename Scalar>
-bool EventSolver<Scalar>::touches_another(std::uint32_t body, std::uint32_t partner) const {
-    for (std::uint32_t side = 0; side < 4; ++side) {
+bool EventSolver<Scalar>::touches_another(std::uint32_t body, std::uint32_t partner) {
+    for (std::uint32_t side = 0; model_->walls && side < 4; ++side) {
         if (body != partner && touches_wall(body, side)) return true;
+    }
+    if (!coasting_.has_about(body, partner, static_cast<Scalar>(1.0 + 2.0 * kTouchWithin))) {
+        return false;
     }
     bool found = false;
     coasting_.for_each_near(body, [&](std::uint32_t other, const Vec& separation) {

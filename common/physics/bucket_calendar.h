@@ -1,0 +1,80 @@
+// The calendar of calendar.h for many bodies: what `set`, `remove` and `top` cost does not grow
+// with their number, while times are spread over some span as those of a gas are. It gives the same
+// order, to the last entry, for any times.
+//
+// A queue of bounded increment (Paul, "A complexity O(1) priority queue for event driven molecular
+// dynamics simulations", 2007): a ring of buckets, each of them a short stretch of time and an
+// unordered list, and a heap of what is in the present bucket. Times beyond the ring wait in one
+// more list, which is gone through once in at least half a round. How long a bucket is suits the
+// times that are there at `rebase`, and at the first `top` after `reset`.
+//
+// Not thread-safe. No allocation but in `reset`.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "common/physics/calendar.h"
+
+namespace fts::physics {
+
+class BucketCalendar {
+  public:
+    using Entry = Calendar::Entry;
+
+    // Empties it. `slots` is above every body's index.
+    void reset(std::uint32_t slots);
+
+    // Enters a body, or moves it. An infinite time removes it.
+    void set(std::uint32_t body, double time_s);
+    void remove(std::uint32_t body);
+
+    bool empty() const { return entries_ == 0; }
+    const Entry& top() {
+        if (present_.empty()) advance();
+        return present_.top();
+    }
+
+    // All times become earlier by `shift_s`. Linear in the number of bodies.
+    void rebase(double shift_s);
+
+  private:
+    // In the list of a bucket, of the far ones, or in none. `before` is a body, or tells the list
+    // that this is the first of.
+    struct Node {
+        double time_s = 0.0;
+        std::uint32_t before = 0;
+        std::uint32_t after = 0;
+    };
+    static_assert(sizeof(Node) == 16);
+    static constexpr std::uint32_t kNobody = 0xffffffff;
+    static constexpr std::uint32_t kPresent = 0xfffffffe;  // in place of `before`: in the heap
+    static constexpr std::uint32_t kAbsent = 0xfffffffd;
+    static constexpr std::uint32_t kFirstOf = 0x80000000;  // a flag: the rest is a bucket
+
+    std::uint64_t stretch_of(double time_s) const;
+    std::uint32_t far() const { return mask_ + 1; }
+    void place(std::uint32_t body);
+    void take_out(std::uint32_t body);
+    void link(std::uint32_t bucket, std::uint32_t body);
+    void advance();
+    std::uint64_t next_occupied() const;
+    void fetch_far();
+    void spread();
+    double suitable_width_s(double first_s);
+
+    std::vector<Node> nodes_;              // by body
+    std::vector<std::uint32_t> first_;     // by bucket; the last one is of the far ones
+    std::vector<std::uint64_t> occupied_;  // a bit for each bucket
+    std::vector<double> sample_s_;
+    Calendar present_;  // of the stretch now_ and all before it
+    std::uint32_t entries_ = 0;
+    std::uint32_t mask_ = 0;
+    double begin_s_ = 0.0;  // of stretch 0
+    double stretches_per_s_ = 0.0;
+    std::uint64_t now_ = 0;
+    std::uint64_t nearest_far_ = 0;  // no far one is in an earlier stretch
+};
+
+}  // namespace fts::physics

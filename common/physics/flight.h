@@ -1,0 +1,65 @@
+// A body in straight flight, and which of those about it are on their way to it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "common/physics/scene.h"
+
+namespace fts::physics {
+
+// What must be read of a body to predict others: one cache line.
+template <typename Scalar>
+struct alignas(64) Flight {
+    Vec2<Scalar> position_m = Vec2<Scalar>::Zero();  // at `since_s`
+    Vec2<Scalar> velocity_mps = Vec2<Scalar>::Zero();
+    double since_s = 0.0;
+    Scalar radius_m = Scalar(0);
+    std::uint32_t events = 0;
+    std::uint32_t cell[2] = {0, 0};
+
+    Vec2<Scalar> position_at(double time_s) const {
+        const Scalar since = static_cast<Scalar>(time_s - since_s);
+        return {position_m.x() + velocity_mps.x() * since,
+                position_m.y() + velocity_mps.y() * since};
+    }
+};
+
+// By how many units of round-off a pair may seem to miss, or to meet too late, and still be
+// computed exactly.
+template <typename Scalar>
+inline constexpr Scalar kFilterSlack = Scalar(1) +
+                                       Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+
+// Two flights since the later one began, the first less the second.
+template <typename Scalar>
+struct Approach {
+    double from_s;
+    Scalar x_m, y_m;
+    Scalar x_mps, y_mps;
+
+    Approach(const Flight<Scalar>& one, const Flight<Scalar>& other, const Vec2<Scalar>& shift_m)
+        : from_s(std::max(one.since_s, other.since_s)),
+          x_mps(one.velocity_mps.x() - other.velocity_mps.x()),
+          y_mps(one.velocity_mps.y() - other.velocity_mps.y()) {
+        const Vec2<Scalar> here = one.position_at(from_s), there = other.position_at(from_s);
+        x_m = (here.x() - there.x()) - shift_m.x();
+        y_m = (here.y() - there.y()) - shift_m.y();
+    }
+    Scalar rate() const { return x_m * x_mps + y_m * y_mps; }
+    Scalar distance_squared() const { return x_m * x_m + y_m * y_m; }
+    Scalar speed_squared() const { return x_mps * x_mps + y_mps * y_mps; }
+
+    // No, only if they recede or miss each other for certain. Without a branch, as either is
+    // likely.
+    bool may_meet(Scalar reach_squared) const {
+        const Scalar aside = x_m * y_mps - y_m * x_mps;
+        const bool misses = aside * aside > kFilterSlack<Scalar> * reach_squared * speed_squared() +
+                                                std::numeric_limits<Scalar>::min();
+        return static_cast<bool>(static_cast<unsigned>(rate() < Scalar(0)) &
+                                 static_cast<unsigned>(!misses));
+    }
+};
+
+}  // namespace fts::physics
