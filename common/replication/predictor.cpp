@@ -1,5 +1,6 @@
 #include "common/replication/predictor.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "common/replication/doubt_tracker.h"
@@ -24,21 +25,27 @@ std::vector<BallState> in_straight_lines(const Lattice& lattice,
     return balls;
 }
 
-std::vector<BallState> by_physics(const Course& course, Tick snap_every,
+// Steps of `step_ticks`, the last one shorter where they do not fit.
+std::vector<BallState> by_physics(const Course& course, Tick step_ticks, Tick snap_every,
                                   std::span<const BallState> baseline, Tick ticks,
                                   DoubtTracker& doubts) {
     LatticeWorld world(course, baseline);
-    if (!course.control_of) {
-        world.advance(course.tick_s * ticks);
-        doubts.follow(world.contacts(), 0.0);
-        return world.balls();
-    }
-    for (Tick tick = 0; tick < ticks; ++tick) {
+    for (Tick tick = 0; tick < ticks; tick += step_ticks) {
         if (snap_every > 0 && tick > 0 && tick % snap_every == 0) world.snap();
-        world.advance(course.tick_s);
+        world.advance(course.tick_s * std::min(step_ticks, ticks - tick));
         doubts.follow(world.contacts(), course.tick_s * tick);
     }
     return world.balls();
+}
+
+// Their controls are not known; what drags at them is.
+std::vector<BallState> unsteered(std::span<const BallState> baseline) {
+    std::vector<BallState> balls(baseline.begin(), baseline.end());
+    for (BallState& ball : balls) {
+        ball.thrust_x = ball.thrust_y = 0;
+        ball.brake = false;
+    }
+    return balls;
 }
 
 }  // namespace
@@ -54,18 +61,20 @@ Prediction predict(const Course& course, const Steering& steering, Foresight for
     if (foresight == Foresight::kStraightLines) {
         balls = in_straight_lines(course.lattice, baseline, span_s);
     } else if (foresight == Foresight::kCollisions) {
-        Course nobody_steers = course;
-        nobody_steers.control_of = nullptr;
-        balls = by_physics(nobody_steers, 0, baseline, ticks, doubts);
+        balls = by_physics(course, steering.snapshot_ticks, 0, unsteered(baseline), ticks, doubts);
     } else {
-        balls =
-            by_physics(course, on_lattice ? steering.snapshot_ticks : 0, baseline, ticks, doubts);
+        balls = by_physics(course, 1, on_lattice ? steering.snapshot_ticks : 0, baseline, ticks,
+                           doubts);
     }
     Prediction prediction{baseline_tick, tick, std::vector<Expectation>(balls.size())};
     doubts.judge(span_s, prediction.balls);
     for (std::size_t i = 0; i < balls.size(); ++i) {
-        prediction.balls[i].state = balls[i];
-        prediction.balls[i].state.dashed = false;
+        BallState& state = prediction.balls[i].state;
+        state = balls[i];
+        state.thrust_x = baseline[i].thrust_x;
+        state.thrust_y = baseline[i].thrust_y;
+        state.brake = baseline[i].brake;
+        state.dashed = false;
     }
     return prediction;
 }

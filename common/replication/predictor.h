@@ -17,7 +17,7 @@ namespace fts::replication {
 
 enum class Foresight : std::uint8_t {
     kStraightLines,     // nothing but velocities
-    kCollisions,        // walls and balls; nobody steers
+    kCollisions,        // walls, balls and drag; nobody steers
     kControls,          // and the baseline's controls go on acting
     kControlsOnLattice  // and the server snaps its state at every snapshot
 };
@@ -25,8 +25,8 @@ enum class Foresight : std::uint8_t {
 struct Steering {
     // What may accelerate a ball that somebody steers (BallKind::kPlayer) unforeseen, m/s^2.
     double unforeseen_mps2 = 0.0;
-    // Ticks between snapshots; with kControlsOnLattice, and whole multiples of it lie between the
-    // baseline and the tick.
+    // Ticks between snapshots, a whole number of which lie between the baseline and the tick where
+    // the server snaps.
     Tick snapshot_ticks = 3;
 };
 

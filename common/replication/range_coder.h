@@ -108,7 +108,7 @@ class RangeEncoder {
             const std::uint64_t value = (low_ + unit - 1) & ~(unit - 1);
             if (value >= low_ + range_) continue;
             low_ = value;
-            carry();
+            if (low_ >> 32 != 0) carry();
             for (std::uint32_t left = 32; left > spared; left -= 8) push();
             return std::exchange(bytes_, {});
         }
@@ -116,7 +116,7 @@ class RangeEncoder {
 
   private:
     void settle() {
-        carry();
+        if (low_ >> 32 != 0) carry();
         while (range_ < range_coder::kLeastRange) {
             push();
             range_ <<= 8;
@@ -127,7 +127,6 @@ class RangeEncoder {
         low_ = (low_ & 0xFFFFFFU) << 8;
     }
     void carry() {
-        if (low_ >> 32 == 0) return;
         low_ &= 0xFFFFFFFFU;
         for (std::size_t i = bytes_.size(); i > 0 && ++bytes_[i - 1] == 0; --i) {
         }

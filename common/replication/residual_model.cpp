@@ -1,5 +1,6 @@
 #include "common/replication/residual_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/physics/exponential.h"
@@ -8,7 +9,8 @@ namespace fts::replication {
 namespace {
 
 // The prior is as sure of itself as if it had seen so many numbers.
-constexpr std::uint32_t kPriorWeight = 12;
+constexpr std::uint32_t kPriorWeight = 4;
+constexpr double kLeastPrior = 0.3;
 // Of what the spread does not know: this part of all numbers, so many times as far.
 constexpr double kTail = 0.08;
 constexpr double kTailReach = 5.0;
@@ -41,8 +43,9 @@ void add_normal(Masses& masses, double variance, double share) {
     }
 }
 
+// Within limits: what is off by more than its doubt is off by any amount.
 AdaptiveBit prior(double part, double of) {
-    const double chance = of > 1e-9 ? part / of : 0.25;
+    const double chance = std::clamp(of > 1e-9 ? part / of : 0.5, kLeastPrior, 1.0 - kLeastPrior);
     return {static_cast<std::uint32_t>(chance * 65536.0), kPriorWeight};
 }
 
@@ -64,7 +67,8 @@ NumberModel NumberModel::of_spread(Doubt doubt) {
     add_normal(masses, variance_of(doubt), 1.0 - kTail);
     add_normal(masses, kTailReach * kTailReach * variance_of(doubt), kTail);
     NumberModel model;
-    model.other_than_zero = prior(1.0 - masses.zero, 1.0);
+    model.other_than_zero = {static_cast<std::uint32_t>(65536.0 * (1.0 - masses.zero)),
+                             kPriorWeight};
     model.negative = prior(0.5, 1.0);
     double left = masses.all_above_zero;
     for (std::size_t width = 1; width < kWidths; ++width) {

@@ -130,6 +130,7 @@ WrittenPart write_part(const Prediction& expected, Merge merge, std::uint32_t fi
     RangeEncoder encoder;
     PartCoder<RangeEncoder> coder(encoder, expected, flags);
     std::vector<BallState> said;
+    said.reserve(std::min(max_entries, expected.balls.size()));
     std::uint32_t unsaid_id = first_id;
     std::size_t entries = 0;
     for (; !merge.done() && entries < max_entries; merge.advance(), ++entries) {

@@ -8,6 +8,7 @@
 #include "server/lab/compare_command.h"
 #include "server/lab/exit_codes.h"
 #include "server/lab/plan_command.h"
+#include "server/lab/replication_command.h"
 #include "server/lab/run_command.h"
 
 int main(int argc, char** argv) {
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
     fts::lab::add_compare(app, exit_code);
     fts::lab::add_plan(app, exit_code);
     fts::lab::add_bench(app, exit_code);
+    fts::lab::add_replication(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -171,7 +171,7 @@ TEST(Predictor, GivesTheSameBitsEverywhere) {
         doubts = doubts * 31 + ball.speed_doubt + 3U * ball.place_doubt + 7U * ball.group +
                  static_cast<std::uint32_t>(ball.lever) + static_cast<std::uint32_t>(ball.lean_x);
     }
-    EXPECT_EQ(doubts, 3750820711U);
+    EXPECT_EQ(doubts, 3546564354U);
 }
 
 TEST(ControlEvents, LeadBothEndsToTheSameState) {

@@ -1,0 +1,141 @@
+#include "server/lab/replication_command.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "server/lab/arena_trace.h"
+#include "server/lab/exit_codes.h"
+#include "server/lab/number_option.h"
+#include "server/lab/output.h"
+#include "server/lab/progress_bar.h"
+#include "server/lab/replication_study.h"
+#include "server/lab/scene_argument.h"
+
+namespace fts::lab {
+namespace {
+
+constexpr double kMaxCount = 65535;  // ids have 16 bits
+constexpr double kMaxTraceS = 1e6;
+
+struct Options {
+    ReplicationRequest request;
+    std::string json_file, svg_file;
+};
+
+bool divides_the_tick_rate(double rate_hz) {
+    const double ticks = kTraceTickRateHz / rate_hz;
+    return std::abs(ticks - std::round(ticks)) < 1e-6;
+}
+
+struct Outputs {
+    std::unique_ptr<Output> json, svg;
+    std::string error;
+};
+
+Outputs open_outputs(const Options& options) {
+    Outputs outputs;
+    if (options.json_file == "-" && options.svg_file == "-") {
+        outputs.error = "--json and --svg both go to the terminal; give one of them a file";
+        return outputs;
+    }
+    if (!options.json_file.empty()) {
+        outputs.json = Output::open(options.json_file, "--json", outputs.error);
+    }
+    if (outputs.error.empty() && !options.svg_file.empty()) {
+        outputs.svg = Output::open(options.svg_file, "--svg", outputs.error);
+    }
+    return outputs;
+}
+
+bool write_all(Outputs& outputs, const ReplicationRequest& request, const ReplicationStudy& study) {
+    if (outputs.json) outputs.json->stream() << json_of(request, study);
+    if (outputs.svg) outputs.svg->stream() << svg_of(request, study);
+    bool good = true;
+    for (Output* output : {outputs.json.get(), outputs.svg.get()}) {
+        if (output != nullptr && !output->finish(outputs.error)) {
+            complain(outputs.error);
+            good = false;
+        }
+    }
+    return good;
+}
+
+// What was decoded and is not what was sent, of all coders.
+std::uint64_t wrong_of(const ReplicationStudy& study) {
+    std::uint64_t wrong = 0;
+    for (const CoderRow& row : study.rows) wrong += row.wrong;
+    return wrong;
+}
+
+int execute(const Options& options) {
+    if (!divides_the_tick_rate(options.request.rate_hz)) {
+        complain("--rate must be 60 over a whole number: 60, 30, 20, 15, 12, 10, ...");
+        return kExitUsage;
+    }
+    Outputs outputs = open_outputs(options);
+    if (!outputs.error.empty()) {
+        complain(outputs.error);
+        return kExitFailure;
+    }
+    listen_for_interruption();
+    ReplicationStudy study;
+    {
+        ProgressBar bar;
+        study = study_replication(
+            options.request, nobody_interrupted,
+            [&](std::size_t done, std::size_t of) { bar.show(done, of, "snapshots"); });
+    }
+    if (!study.error.empty()) {
+        complain(study.error);
+        return kExitUsage;
+    }
+    const bool to_stdout = options.json_file == "-" || options.svg_file == "-";
+    std::fputs(table_of(options.request, study).c_str(), to_stdout ? stderr : stdout);
+    const bool written = write_all(outputs, options.request, study);
+    if (wrong_of(study) > 0) {
+        complain(std::to_string(wrong_of(study)) + " snapshots were not decoded to what was sent");
+        return kExitFailure;
+    }
+    if (study.stopped()) return kExitInterrupted;
+    return written ? 0 : kExitFailure;
+}
+
+}  // namespace
+
+void add_replication(CLI::App& app, int& exit_code) {
+    CLI::App* command = app.add_subcommand(
+        "replication", "What a snapshot costs on the wire: every way to code it, on one trace");
+    const auto options = std::make_shared<Options>();
+    ReplicationRequest& request = options->request;
+    command->add_option("--count", request.count, "Balls")
+        ->check(number_from(1, kMaxCount))
+        ->capture_default_str();
+    command->add_option("--rate", request.rate_hz, "Snapshots per second, 60 over a whole number")
+        ->check(number_from(1, kTraceTickRateHz))
+        ->capture_default_str();
+    command
+        ->add_option("--delay-ms", request.delay_ms,
+                     "From sending a snapshot to hearing that it was held")
+        ->check(number_from(0, 2000))
+        ->capture_default_str();
+    command
+        ->add_option("--loss", request.loss,
+                     "Part of the datagrams that is lost, and of the acknowledgements")
+        ->check(number_from(0, 0.9))
+        ->capture_default_str();
+    command
+        ->add_option("--seconds", request.seconds,
+                     "Simulated time, of which the first 10 are not measured")
+        ->check(number_from(kUnmeasuredS + 1, kMaxTraceS))
+        ->capture_default_str();
+    command->add_option("--json", options->json_file, "File for all figures; - for the terminal");
+    command->add_option("--svg", options->svg_file,
+                        "File for a picture of size against cost; - for the terminal");
+    command->callback([options, &exit_code] { exit_code = execute(*options); });
+}
+
+}  // namespace fts::lab
