@@ -207,8 +207,8 @@ std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>
         lab::Plot plot = figure_of(results_in(sets, "speed"), lab::BenchAxis::kSpeed, "speed");
         plot.title = "What speed costs";
         plot.subtitle =
-            "10,000 equal balls in a walled box, packing 0.3. Beyond about 1 r a tick `discrete`, "
-            "Chipmunk and Box2D let balls through each other; `swept` and `event` never do.";
+            "10,000 equal balls in a walled box, packing 0.3. Beyond about 1 r a tick discrete, "
+            "Chipmunk and Box2D let balls through each other; swept and event never do.";
         figures.push_back({"speed-speed.svg", plot});
     }
     return figures;
