@@ -1,6 +1,6 @@
-// Which bodies may meet: a uniform grid over the boxes that bodies sweep until the end of a span. A
-// superset of all pairs whose boxes overlap, each once per query, in an order that depends on the
-// calls only.
+// Which bodies may meet, however large, fast or far off they are: a uniform grid over the boxes
+// that bodies sweep until the end of a span. A superset of all pairs whose boxes overlap, each once
+// per query, in an order that depends on the calls only.
 //
 // The grid covers where most bodies are; coordinates beyond it count to its border cells, so that
 // it is right for any extent, and its size is bound by the number of bodies however far they

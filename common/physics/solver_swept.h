@@ -20,6 +20,11 @@
 // them, all such contacts are resolved as a set (simultaneous.h); a pair alone keeps its closed
 // form, and its bits.
 //
+// Who may meet whom is found for one look at a time, a part of the span in which most bodies move
+// by less than a radius (swept_paths.h): collisions between fast bodies are many, and in a short
+// time few others are near. What is predicted for a pair depends on the last event of either alone,
+// and not on the look it is predicted in.
+//
 // In a periodic scene a pair is predicted once for each image of the one that may meet the other.
 // The span is cut into stretches in which nobody moves by more than a quarter of the box, so that
 // few images come into question, and positions are brought back into the box after each; a

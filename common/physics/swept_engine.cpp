@@ -14,34 +14,20 @@ constexpr double kBoxSlack = 8.0;
 // Before there are so many, a stray more is reason enough to fit their grid anew.
 constexpr std::size_t kFirstStrays = 8;
 
+// By how many units of the span's round-off a look sees further than it is for.
+constexpr double kSeenSlack = 16.0;
+constexpr std::uint32_t kMostLooks = 32;
+constexpr double kWayOfALook = 0.4;  // of a radius
+// One look is enough for so few, and so many are asked how far they move.
+constexpr std::size_t kFewBodies = 64;
+
+// A part of the span: what is not due within that after the end of a look is not due in it.
+template <typename Scalar>
+constexpr Scalar kWallSlack = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+
 // So that round-off does not matter where many are left out together.
 template <typename Scalar>
 constexpr Scalar kWider = Scalar(1.01);
-
-// What is left of a platform's square when its edge is to be out of reach beyond doubt.
-template <typename Scalar>
-constexpr Scalar kWellInside = Scalar(0.999);
-
-// Whether a way of at most `way_m` on each axis surely does not lead off the platform.
-template <typename Scalar>
-bool stays_on(const Disc& disc, const Vec2<Scalar>& position_m, const Vec2<Scalar>& way_m) {
-    const auto radius = static_cast<Scalar>(disc.radius_m);
-    return (position_m.cwiseAbs() + way_m).squaredNorm() < kWellInside<Scalar> * radius * radius;
-}
-
-template <typename Scalar>
-bool stays_on(const Ring& ring, const Vec2<Scalar>& position_m, const Vec2<Scalar>& way_m) {
-    const Scalar near = static_cast<Scalar>(ring.inner_radius_m) + way_m.x() + way_m.y();
-    return near * near < kWellInside<Scalar> * position_m.squaredNorm() &&
-           stays_on(Disc{ring.outer_radius_m}, position_m, way_m);
-}
-
-template <typename Scalar>
-bool stays_on(const Rectangle& rectangle, const Vec2<Scalar>& position_m,
-              const Vec2<Scalar>& way_m) {
-    const Vec2<Scalar> half = kWellInside<Scalar> * rectangle.half_extents_m.cast<Scalar>();
-    return ((position_m.cwiseAbs() + way_m).array() < half.array()).all();
-}
 
 }  // namespace
 
@@ -74,9 +60,10 @@ void SweptEngine<Scalar, Space>::begin(Bodies<Scalar>& bodies, const Model<Scala
     span_s_ = span_s;
     now_s_ = Scalar(0);
     begin_knowledge();
+    looks_ = looks_for(span_s);
     if constexpr (Space::kHasImages) {
         space_.begin(*model.periodic);
-        std::fill(time_s_.begin(), time_s_.end(), Scalar(0));
+        for (Known& known : known_) known.time_s = Scalar(0);
     }
 }
 
@@ -84,43 +71,64 @@ void SweptEngine<Scalar, Space>::begin(Bodies<Scalar>& bodies, const Model<Scala
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::begin_knowledge() {
     for (const std::uint32_t body : touched_) {
-        time_s_[body] = Scalar(0);
-        hit_s_[body] = kLongAgo;
-        partner_[body] = {};
-        is_touched_[body] = 0;
+        known_[body] = {.count = known_[body].count};
     }
     touched_.clear();
     const std::uint32_t slots = bodies_->slots();
-    if (slots == is_touched_.size()) return;
+    if (slots == known_.size()) return;
     touched_.reserve(slots);
     strays_.reserve(slots);
     boxes_.reserve(slots);
     near_.reserve(slots);
     strays_near_.reserve(slots);
     queue_.reserve(slots);
-    time_s_.resize(slots, Scalar(0));
-    hit_s_.resize(slots, kLongAgo);
-    count_.resize(slots, 0);
-    partner_.resize(slots);
-    is_touched_.resize(slots, 0);
+    places_.reserve(slots);
+    ends_.reserve(slots);
+    known_.resize(slots);
 }
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::begin_stretch() {
     until_s_ = stretch_end();
-    from_s_ = now_s_;
-    queue_.begin(from_s_, until_s_);
-    for (const std::uint32_t body : touched_) partner_[body] = {};
-    predict_everybody();
+    for (const std::uint32_t body : touched_) known_[body].partner = {};
+    kept_.clear();
 }
 
 // False when the event budget ran out.
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::run_stretch() {
+    const Scalar begin_s = now_s_, look_s = (until_s_ - begin_s) / static_cast<Scalar>(looks_);
+    for (std::uint32_t look = 1;; ++look) {
+        begin_look(look, begin_s + static_cast<Scalar>(look) * look_s);
+        if (!run_look()) return false;
+        if (look_until_s_ >= until_s_) return true;
+        now_s_ = look_until_s_;
+    }
+}
+
+// A little more is seen than the look is for, so that what is due at the same instant is seen
+// together.
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::begin_look(std::uint32_t look, Scalar until_s) {
+    const bool is_last = look >= looks_ || !(until_s < until_s_);
+    is_first_look_ = look == 1;
+    from_s_ = now_s_;
+    look_until_s_ = is_last ? until_s_ : until_s;
+    seen_until_s_ =
+        std::min(until_s_, look_until_s_ + static_cast<Scalar>(kSeenSlack) *
+                                               std::numeric_limits<Scalar>::epsilon() * span_s_);
+    queue_.begin(from_s_, seen_until_s_);
+    std::sort(kept_.begin(), kept_.end());
+    kept_before_ = std::ssize(kept_);
+    predict_everybody();
+}
+
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::run_look() {
     while (!queue_.empty()) {
+        if (queue_.next().time_s > std::min(look_until_s_, until_s_)) break;
         const Happening event = queue_.pop();
         if (is_stale(event)) continue;
-        if (Space::kHasImages && event.time_s > until_s_) break;
         if (spent_ >= budget_) return false;
         now_s_ = event.time_s;
         process(event);
@@ -128,29 +136,62 @@ bool SweptEngine<Scalar, Space>::run_stretch() {
     return true;
 }
 
+// So many that most move by less than a part of their radius in each.
+template <typename Scalar, typename Space>
+std::uint32_t SweptEngine<Scalar, Space>::looks_for(Scalar span_s) const {
+    const Bodies<Scalar>& all = *bodies_;
+    if (all.ids.size() < kFewBodies) return 1;
+    const std::size_t stride = all.ids.size() / kFewBodies;
+    Scalar ways = Scalar(0), radii = Scalar(0);
+    for (std::size_t i = 0; i < all.ids.size(); i += stride) {
+        const std::uint32_t body = all.ids[i].index;
+        ways += all.velocity_mps[body].cwiseAbs().maxCoeff() * span_s;
+        radii += all.radius_m[body];
+    }
+    const Scalar wanted = std::ceil(ways / (static_cast<Scalar>(kWayOfALook) * radii));
+    if (!(wanted > Scalar(1)) || wanted > static_cast<Scalar>(4 * kMostLooks)) return 1;
+    const auto looks =
+        static_cast<std::uint32_t>(std::min(wanted, static_cast<Scalar>(kMostLooks)));
+    const bool is_alike = 3 * looks > 2 * looks_ && 2 * looks < 3 * looks_;
+    return is_alike ? looks_ : looks;
+}
+
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::end_stretch(Scalar time_s) {
     now_s_ = time_s;
-    Bodies<Scalar>& all = *bodies_;
-    for (const BodyId id : all.ids) {
-        const Vec position = position_at(id.index, time_s);
-        if constexpr (Space::kHasImages) {
-            all.position_m[id.index] = space_.home(position);
-            time_s_[id.index] = time_s;
-        } else {
-            all.position_m[id.index] = position;
+    Vec* const position = bodies_->position_m.data();
+    const Vec* const velocity = bodies_->velocity_mps.data();
+    if constexpr (Space::kHasImages) {
+        for (const BodyId id : bodies_->ids) {
+            position[id.index] = space_.home(position_at(id.index, time_s));
+            known_[id.index].time_s = time_s;
         }
+        return;
     }
+    ends_.clear();
+    for (const std::uint32_t body : touched_) {
+        ends_.push_back(bodies_->alive[body] ? position_at(body, time_s) : position[body]);
+    }
+    const std::uint32_t slots = bodies_->slots();
+    if (bodies_->ids.size() == slots) {
+        for (std::uint32_t body = 0; body < slots; ++body) {
+            position[body] += velocity[body] * time_s;
+        }
+    } else {
+        for (const BodyId id : bodies_->ids) position[id.index] += velocity[id.index] * time_s;
+    }
+    for (std::size_t i = 0; i < ends_.size(); ++i) position[touched_[i]] = ends_[i];
 }
 
 // An open space has one stretch, the span.
 template <typename Scalar, typename Space>
 Scalar SweptEngine<Scalar, Space>::stretch_end() const {
     if constexpr (Space::kHasImages) {
-        Scalar fastest = Scalar(0);
+        Vec fastest_mps = Vec::Zero();
         for (const BodyId id : bodies_->ids) {
-            fastest = std::max(fastest, space_.boxes_per_s(bodies_->velocity_mps[id.index]));
+            fastest_mps = fastest_mps.cwiseMax(bodies_->velocity_mps[id.index].cwiseAbs());
         }
+        const Scalar fastest = space_.boxes_per_s(fastest_mps);
         const Scalar left_s = span_s_ - now_s_;
         const Scalar stretches =
             std::ceil(fastest * left_s / static_cast<Scalar>(Space::kLongestWayInBoxes));
@@ -198,9 +239,13 @@ void SweptEngine<Scalar, Space>::fit_strays() {
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_everybody() {
-    paths_.begin(*bodies_, model_->equal_radii, until_s_ - now_s_);
+    paths_.begin(*bodies_, places(), model_->equal_radii, seen_until_s_ - from_s_);
     strays_.assign(paths_.strays().begin(), paths_.strays().end());
-    if (model_->equal_radii) {
+    if (!is_first_look_) {
+        paths_.for_each_pair([&](std::uint32_t a, std::uint32_t b) {
+            predict_pair(std::min(a, b), std::max(a, b), Image{});
+        });
+    } else if (model_->equal_radii) {
         predict_pairs<true>();
     } else {
         predict_pairs<false>();
@@ -211,6 +256,15 @@ void SweptEngine<Scalar, Space>::predict_everybody() {
     if (model_->platform) {
         for (const BodyId id : bodies_->ids) predict_fall(id.index);
     }
+}
+
+// Where everybody is when the look begins.
+template <typename Scalar, typename Space>
+auto SweptEngine<Scalar, Space>::places() -> std::span<const Vec> {
+    if (is_first_look_) return bodies_->position_m;
+    places_.resize(bodies_->slots());
+    for (const BodyId id : bodies_->ids) places_[id.index] = position_at(id.index, from_s_);
+    return places_;
 }
 
 // Only who starts near a wall may reach it.
@@ -242,7 +296,7 @@ void SweptEngine<Scalar, Space>::predict_pairs() {
         expect(
             {now_s_ + time_until_contact<Scalar>(all.position_m[a] - all.position_m[b],
                                                  all.velocity_mps[a] - all.velocity_mps[b], reach),
-             EventKind::kBall, a, b, count_[a], count_[b], Image{}});
+             EventKind::kBall, a, b, known_[a].count, known_[b].count, Image{}});
     });
 }
 
@@ -252,10 +306,18 @@ template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_images() {
     if constexpr (Space::kHasImages) {
         const Scalar margin = kWider<Scalar> * (paths_.longest_way_m() + paths_.largest_radius_m());
-        space_.uncover(margin);
-        for (const BodyId id : bodies_->ids) {
-            const std::uint32_t body = id.index;
-            if (paths_.is_stray(body)) continue;
+        Box<Scalar> where = space_.box();
+        if (!is_first_look_) {
+            for (const BodyId id : bodies_->ids) {
+                const Vec& place = places_[id.index];
+                where = {std::min(where.min_x_m, place.x()), std::min(where.min_y_m, place.y()),
+                         std::max(where.max_x_m, place.x()), std::max(where.max_y_m, place.y())};
+            }
+        }
+        space_.cover_only({where.min_x_m - margin, where.min_y_m - margin, where.max_x_m + margin,
+                           where.max_y_m + margin});
+        const Box<Scalar> inside = space_.without_images(kWider<Scalar> * margin);
+        paths_.for_each_outside(inside, [&](std::uint32_t body) {
             const Path path = path_of(body);
             space_.for_each_image(swept_box(body), [&](const Box<Scalar>&, Image image) {
                 if (!image.is_upper()) return;
@@ -267,7 +329,7 @@ void SweptEngine<Scalar, Space>::predict_images() {
                                  body < other ? image : -image);
                 });
             });
-        }
+        });
     }
 }
 
@@ -300,7 +362,9 @@ void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body) {
             if (other == body || !bodies_->alive[other]) return;
             const std::uint32_t a = std::min(body, other), b = std::max(body, other);
             const Image of_a = a == body ? image : -image;
-            if (kAfterSet && set_.keeps_apart(a, b, separation_now(a, b, of_a))) return;
+            if (kAfterSet && set_.keeps_apart(a, b, separation_now(a, b, of_a))) {
+                return keep({a, b, of_a, known_[a].count, known_[b].count});
+            }
             predict_pair(a, b, of_a);
         };
         if (any_strays) strays_near_.for_each_near(body, moved_box, meet);
@@ -313,55 +377,64 @@ void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body) {
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_pair(std::uint32_t a, std::uint32_t b, Image image) {
-    if (partner_[a] == Partner{b, image} && partner_[b] == Partner{a, image}) return;
+    if (known_[a].partner == Partner{b, image} && known_[b].partner == Partner{a, image}) return;
     if (!model_->equal_masses && is_immovable(a) && is_immovable(b)) return;
-    const Vec separation = separation_now(a, b, image);
+    if (is_kept({a, b, image, known_[a].count, known_[b].count})) return;
+    const Scalar known_s = std::max(known_[a].time_s, known_[b].time_s);
+    const Vec separation = space_.moved(position_at(a, known_s), image) - position_at(b, known_s);
     const Vec velocity = bodies_->velocity_mps[a] - bodies_->velocity_mps[b];
     const Scalar reach = bodies_->radius_m[a] + bodies_->radius_m[b];
-    expect({now_s_ + time_until_contact(separation, velocity, reach), EventKind::kBall, a, b,
-            count_[a], count_[b], image});
+    expect({known_s + time_until_contact(separation, velocity, reach), EventKind::kBall, a, b,
+            known_[a].count, known_[b].count, image});
 }
 
 template <typename Scalar, typename Space>
 template <bool kAfterSet>
 void SweptEngine<Scalar, Space>::predict_walls(std::uint32_t body) {
-    const Vec position = position_at(body, now_s_);
+    const Scalar known_s = known_[body].time_s;
+    const Scalar left_s = seen_until_s_ - known_s + kWallSlack<Scalar> * span_s_;
+    const Vec& position = bodies_->position_m[body];
     const Vec& velocity = bodies_->velocity_mps[body];
     const Scalar radius = bodies_->radius_m[body];
-    const auto expect_wall = [&](std::uint32_t side, Scalar time_s) {
-        if (kAfterSet && set_.keeps_off_wall(body, side)) return;
-        expect({now_s_ + time_s, EventKind::kWall, body, side, count_[body], 0});
+    const auto look_at = [&](std::uint32_t side, Scalar gap, Scalar closing_mps) {
+        if (gap > closing_mps * left_s) return;
+        const Hold hold = {body, kWallHold + side, Image{}, known_[body].count, 0};
+        if (kAfterSet && set_.keeps_off_wall(body, side)) return keep(hold);
+        if (is_kept(hold)) return;
+        expect({known_s + time_until_wall(gap, closing_mps), EventKind::kWall, body, side,
+                known_[body].count, 0});
     };
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
         const Scalar below = position[axis] - (model_->walls->min_m[axis] + radius);
         const Scalar above = (model_->walls->max_m[axis] - radius) - position[axis];
-        expect_wall(2 * axis, time_until_wall(below, -velocity[axis]));
-        expect_wall(2 * axis + 1, time_until_wall(above, velocity[axis]));
+        look_at(2 * axis, below, -velocity[axis]);
+        look_at(2 * axis + 1, above, velocity[axis]);
     }
 }
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_fall(std::uint32_t body) {
-    const Vec position = position_at(body, now_s_);
+    const Scalar known_s = known_[body].time_s;
+    const Vec& position = bodies_->position_m[body];
     const Vec& velocity = bodies_->velocity_mps[body];
-    const Vec way = velocity.cwiseAbs() * (until_s_ - now_s_);
-    const bool stays =
-        std::visit([&](const auto& shape) { return stays_on<Scalar>(shape, position, way); },
-                   *model_->platform);
-    if (stays) return;
+    const Vec way = velocity.cwiseAbs() * (seen_until_s_ - known_s);
+    if (surely_stays<Scalar>(*model_->platform, position, way)) return;
     const Scalar time = time_until_edge<Scalar>(*model_->platform, position, velocity);
-    expect({now_s_ + time, EventKind::kFall, body, 0, count_[body], 0});
+    expect({known_s + time, EventKind::kFall, body, 0, known_[body].count, 0});
 }
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::expect(const Happening& event) {
-    if (event.time_s <= until_s_) queue_.push(event);
+    if (event.time_s > seen_until_s_ || event.time_s > until_s_) return;
+    // What was due in an earlier look has happened there, or turned out to be nothing.
+    if (!is_first_look_ && event.time_s <= from_s_) return;
+    queue_.push(event);
 }
 
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::is_stale(const Happening& event) const {
-    return event.count_a != count_[event.a] ||
-           (event.kind == EventKind::kBall && event.count_b != count_[event.b]);
+    return event.count_a != known_[event.a].count ||
+           (event.kind == EventKind::kBall && event.count_b != known_[event.b].count);
 }
 
 template <typename Scalar, typename Space>
@@ -372,9 +445,9 @@ void SweptEngine<Scalar, Space>::count(std::uint32_t events, std::uint32_t cost)
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::after_event(std::uint32_t body, const Partner& partner) {
-    ++count_[body];
-    partner_[body] = partner;
-    hit_s_[body] = now_s_;
+    ++known_[body].count;
+    known_[body].partner = partner;
+    known_[body].hit_s = now_s_;
 }
 
 template <typename Scalar, typename Space>
@@ -394,7 +467,7 @@ void SweptEngine<Scalar, Space>::place_and_predict_set() {
 template <typename Scalar, typename Space>
 Box<Scalar> SweptEngine<Scalar, Space>::swept_box(std::uint32_t body) const {
     const Vec from = position_at(body, now_s_);
-    const Vec to = position_at(body, until_s_);
+    const Vec to = position_at(body, seen_until_s_);
     const Scalar radius = bodies_->radius_m[body];
     const Scalar extent = std::max(std::abs(from.x()), std::abs(from.y())) +
                           std::max(std::abs(to.x()), std::abs(to.y())) + radius;
@@ -406,7 +479,7 @@ Box<Scalar> SweptEngine<Scalar, Space>::swept_box(std::uint32_t body) const {
 
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::was_just_hit(std::uint32_t body) const {
-    return now_s_ - hit_s_[body] < static_cast<Scalar>(kElasticWithin) * span_s_;
+    return now_s_ - known_[body].hit_s < static_cast<Scalar>(kElasticWithin) * span_s_;
 }
 
 template class SweptEngine<double, OpenSpace<double>>;

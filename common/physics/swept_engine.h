@@ -2,9 +2,12 @@
 // others.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "common/physics/broadphase.h"
@@ -35,12 +38,33 @@ class SweptEngine {
         friend auto operator<=>(const Partner&, const Partner&) = default;
     };
 
+    // Of one body, in the drift.
+    struct Known {
+        Scalar time_s = Scalar(0);  // when its position holds
+        Scalar hit_s = kLongAgo;    // the last collision
+        std::uint32_t count = 0;    // events so far, and before
+        Partner partner = {};       // whom it hit last, if nothing happened since
+        bool is_touched = false;
+    };
+    // What a set of simultaneous contacts keeps apart until anything else happens to one of them.
+    struct Hold {
+        std::uint32_t a, b;  // b: or kWallHold and the side
+        [[no_unique_address]] Image image;
+        std::uint32_t count_a, count_b;
+        friend auto operator<=>(const Hold&, const Hold&) = default;
+    };
+    static constexpr std::uint32_t kWallHold = 0xfffffff0;
+
     // When, and what it changes: swept_engine.cpp.
     void begin(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                Record<Scalar>& record);
     void begin_knowledge();
     void begin_stretch();
     bool run_stretch();
+    std::uint32_t looks_for(Scalar span_s) const;
+    void begin_look(std::uint32_t look, Scalar until_s);
+    bool run_look();
+    std::span<const Vec> places();
     void end_stretch(Scalar time_s);
     Scalar stretch_end() const;
     void shorten_stretch(std::uint32_t body);
@@ -56,6 +80,14 @@ class SweptEngine {
     void predict(std::uint32_t body);
     template <bool kAfterSet>
     void predict_meetings(std::uint32_t body);
+    void keep(const Hold& hold) {
+        if (looks_ > 1) kept_.push_back(hold);
+    }
+    // Of those kept in earlier looks.
+    bool is_kept(const Hold& hold) const {
+        return !is_first_look_ && !kept_.empty() &&
+               std::binary_search(kept_.begin(), kept_.begin() + kept_before_, hold);
+    }
     void predict_pair(std::uint32_t a, std::uint32_t b, Image image);
     Path path_of(std::uint32_t body) const {
         return {position_at(body, now_s_), bodies_->velocity_mps[body], bodies_->radius_m[body],
@@ -108,16 +140,16 @@ class SweptEngine {
     Vec position_at(std::uint32_t body, Scalar time_s) const {
         const Vec& position = bodies_->position_m[body];
         const Vec& velocity = bodies_->velocity_mps[body];
-        const Scalar since_s = time_s - time_s_[body];
+        const Scalar since_s = time_s - known_[body].time_s;
         return {position.x() + velocity.x() * since_s, position.y() + velocity.y() * since_s};
     }
     void move_to(std::uint32_t body, Scalar time_s) {
-        if (is_touched_[body] == 0) {
-            is_touched_[body] = 1;
+        if (!known_[body].is_touched) {
+            known_[body].is_touched = true;
             touched_.push_back(body);
         }
         bodies_->position_m[body] = position_at(body, time_s);
-        time_s_[body] = time_s;
+        known_[body].time_s = time_s;
     }
     // From b to the image of a.
     Vec separation_now(std::uint32_t a, std::uint32_t b, Image image) const {
@@ -138,16 +170,18 @@ class SweptEngine {
     std::uint32_t budget_ = 0;
     std::uint32_t spent_ = 0;  // of the budget
     Scalar span_s_ = Scalar(0);
-    Scalar from_s_ = Scalar(0);  // the present stretch, within the span
-    Scalar until_s_ = Scalar(0);
+    Scalar until_s_ = Scalar(0);  // the end of the present stretch, within the span
+    // The present look, within the stretch: in it events are found before look_until_s_, and those
+    // seen up to seen_until_s_.
+    Scalar from_s_ = Scalar(0);
+    Scalar look_until_s_ = Scalar(0);
+    Scalar seen_until_s_ = Scalar(0);
+    bool is_first_look_ = true;
+    std::uint32_t looks_ = 1;  // in a stretch
     Scalar now_s_ = Scalar(0);
 
-    std::vector<Scalar> time_s_;        // by body: when its position holds
-    std::vector<std::uint32_t> count_;  // by body: events so far
-    std::vector<Partner> partner_;      // by body: whom it hit last, if nothing happened since
-    std::vector<Scalar> hit_s_;         // by body: the last collision
-    std::vector<std::uint8_t> is_touched_;
-    std::vector<std::uint32_t> touched_;  // of whom the above is not as it was at first
+    std::vector<Known> known_;            // by body
+    std::vector<std::uint32_t> touched_;  // of whom that is not as it was at first
     SweptPaths<Scalar> paths_;
     std::vector<std::uint32_t> strays_;  // whom paths_ does not hold
     std::size_t fitted_strays_ = 0;
@@ -157,6 +191,10 @@ class SweptEngine {
     ContactSet<Scalar> set_;
     std::vector<Happening> not_in_set_;
     std::vector<Partner> near_;
+    std::vector<Hold> kept_;
+    std::ptrdiff_t kept_before_ = 0;  // the present look
+    std::vector<Vec> places_;
+    std::vector<Vec> ends_;  // of those touched
 };
 
 }  // namespace fts::physics

@@ -28,48 +28,65 @@ struct SweptKernels {
         return count >= Pack::kWidth ? (1U << Pack::kWidth) - 1U : (1U << count) - 1U;
     }
 
-    // What is found is written down whether it is anything or not: few cells hold more than one
-    // vector, and whether they hold anybody near is not to be foreseen.
+    // The first lanes are looked at even when there are none: few cells hold more than one vector,
+    // and whether they hold anybody is not to be foreseen. Lanes beyond the last path are of cells
+    // further on, which are hardly ever near, and are taken away only when one of them is.
     static std::size_t find_pairs(const PathLanes& lanes, const PairSearch& search,
                                   PairCursor& cursor, FoundPairs* found, std::size_t room) {
-        const float *all_x = lanes.x, *all_y = lanes.y;
-        const float *all_ahead_x = lanes.ahead_x, *all_ahead_y = lanes.ahead_y;
+        return search.rows == 1 ? find_pairs_in<true>(lanes, search, cursor, found, room)
+                                : find_pairs_in<false>(lanes, search, cursor, found, room);
+    }
+
+    template <bool kOneRow>
+    static std::size_t find_pairs_in(const PathLanes& lanes, const PairSearch& search,
+                                     PairCursor& cursor, FoundPairs* found, std::size_t room) {
+        const float *const all_x = lanes.x, *const all_y = lanes.y;
+        const float *const all_ahead_x = lanes.ahead_x, *const all_ahead_y = lanes.ahead_y;
         const float reach = search.reach;
-        const std::uint32_t width = lanes.width, paths = lanes.paths, rows = search.rows;
+        const std::uint32_t rows = search.rows, width = lanes.width;
+        const std::uint32_t* const first_path = lanes.first;
         const Vector limit = Pack::all(search.limit);
-        const FoundPairs* const full = found + (room - most_found(paths, rows));
+        const FoundPairs* const full = found + (room - most_found(lanes.paths, rows));
         FoundPairs* out = found;
         std::uint32_t i = cursor.path, row = cursor.row;
-        for (; i < paths && out <= full; ++i) {
-            while (lanes.first[(row + 1) * width] <= i) ++row;
-            const std::uint32_t* cells = lanes.first + row * width;
-            const float x = all_x[i];
-            const Vector at_x = Pack::all(x), at_y = Pack::all(all_y[i]);
-            const Vector to_x = Pack::all(all_ahead_x[i]), to_y = Pack::all(all_ahead_y[i]);
-            const Vector radius = kEqualRadii ? Vector() : Pack::all(lanes.radius[i]);
-            const auto look = [&](std::uint32_t first, std::uint32_t last) {
-                for (;;) {
-                    const Vector dx = Pack::sub(Pack::load(all_x + first), at_x);
-                    const Vector dy = Pack::sub(Pack::load(all_y + first), at_y);
-                    const Vector ex = Pack::sub(Pack::load(all_ahead_x + first), to_x);
-                    const Vector ey = Pack::sub(Pack::load(all_ahead_y + first), to_y);
-                    const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
-                    const std::uint32_t bits =
-                        Pack::at_most(sum, squared_reach(lanes, first, radius, limit)) &
-                        first_lanes(last - first);
-                    *out = {i, first, bits};
-                    out += bits != 0 ? 1 : 0;
-                    if (last - first <= Pack::kWidth) return;
-                    first += Pack::kWidth;
+        for (; i < lanes.paths && out <= full; ++row) {
+            const std::uint32_t* const cells = first_path + row * width;
+            const std::uint32_t end = cells[width];
+            for (; i < end && out <= full; ++i) {
+                const float x = all_x[i];
+                const Vector at_x = Pack::all(x), at_y = Pack::all(all_y[i]);
+                const Vector to_x = Pack::all(all_ahead_x[i]), to_y = Pack::all(all_ahead_y[i]);
+                const Vector radius = kEqualRadii ? Vector() : Pack::all(lanes.radius[i]);
+                const auto look = [&](std::uint32_t first, std::uint32_t last) {
+                    for (;; first += Pack::kWidth) {
+                        const Vector dx = Pack::sub(Pack::load(all_x + first), at_x);
+                        const Vector dy = Pack::sub(Pack::load(all_y + first), at_y);
+                        const Vector ex = Pack::sub(Pack::load(all_ahead_x + first), to_x);
+                        const Vector ey = Pack::sub(Pack::load(all_ahead_y + first), to_y);
+                        const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
+                        const std::uint32_t bits =
+                            Pack::at_most(sum, squared_reach(lanes, first, radius, limit));
+                        if (bits != 0) [[unlikely]] {
+                            *out = {i, first, bits & first_lanes(last - first)};
+                            out += out->bits != 0 ? 1 : 0;
+                        }
+                        if (last - first <= Pack::kWidth) [[likely]]
+                            return;
+                    }
+                };
+                const auto low = static_cast<std::uint32_t>(static_cast<std::int32_t>(x - reach));
+                const auto high = static_cast<std::uint32_t>(static_cast<std::int32_t>(x + reach));
+                look(i + 1, cells[high + 1]);
+                const std::uint32_t* next = cells + width;
+                if constexpr (kOneRow) {
+                    look(next[low], next[high + 1]);
+                } else {
+                    for (std::uint32_t k = 0; k < rows; ++k, next += width) {
+                        look(next[low], next[high + 1]);
+                    }
                 }
-            };
-            const auto low = static_cast<std::int32_t>(x - reach);
-            const auto high = static_cast<std::int32_t>(x + reach) + 1;
-            look(i + 1, cells[high]);
-            for (std::uint32_t k = 1; k <= rows; ++k) {
-                look(cells[k * width + static_cast<std::uint32_t>(low)],
-                     cells[k * width + static_cast<std::uint32_t>(high)]);
             }
+            if (i < end) break;
         }
         cursor = {i, row};
         return static_cast<std::size_t>(out - found);

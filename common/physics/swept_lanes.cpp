@@ -11,8 +11,7 @@
 namespace fts::physics {
 
 #if defined(__x86_64__)
-const LaneKernels& lane_kernels_avx2(bool equal_radii);    // swept_lanes_avx2.cpp
-const LaneKernels& lane_kernels_avx512(bool equal_radii);  // swept_lanes_avx512.cpp
+const LaneKernels& lane_kernels_avx2(bool equal_radii);  // swept_lanes_avx2.cpp
 #endif
 
 namespace {
@@ -85,11 +84,8 @@ const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii) {
 #if defined(__x86_64__)
         case LaneWidth::kAvx2:
             return __builtin_cpu_supports("avx2") ? &lane_kernels_avx2(equal_radii) : nullptr;
-        case LaneWidth::kAvx512:
-            return __builtin_cpu_supports("avx512f") ? &lane_kernels_avx512(equal_radii) : nullptr;
 #else
         case LaneWidth::kAvx2:
-        case LaneWidth::kAvx512:
             return nullptr;
 #endif
     }
@@ -97,7 +93,7 @@ const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii) {
 }
 
 const LaneKernels& lane_kernels(bool equal_radii) {
-    for (const LaneWidth width : {LaneWidth::kAvx512, LaneWidth::kAvx2, LaneWidth::kSse2}) {
+    for (const LaneWidth width : {LaneWidth::kAvx2, LaneWidth::kSse2}) {
         if (const LaneKernels* kernels = lane_kernels(width, equal_radii)) return *kernels;
     }
     return *lane_kernels(LaneWidth::kPlain, equal_radii);

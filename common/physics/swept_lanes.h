@@ -17,7 +17,7 @@
 namespace fts::physics {
 
 // So many floats after the last path may be read. They must be NaN, which is near to nothing.
-inline constexpr std::uint32_t kMostLanes = 16;
+inline constexpr std::uint32_t kMostLanes = 8;
 
 struct PathLanes {
     const float* x;  // at the start of the span
@@ -89,11 +89,11 @@ struct LaneKernels {
                           void* whom);
 };
 
-enum class LaneWidth : std::uint8_t { kPlain, kSse2, kAvx2, kAvx512 };
+enum class LaneWidth : std::uint8_t { kPlain, kSse2, kAvx2 };
 
 // Null where this program or this processor has not got it.
 const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii);
-// The widest there are.
+// The widest there are. Vectors of AVX-512 would be slower: few cells hold so many paths.
 const LaneKernels& lane_kernels(bool equal_radii);
 
 }  // namespace fts::physics

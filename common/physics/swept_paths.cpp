@@ -19,12 +19,15 @@ constexpr double kWaysOfMost = 2.3;
 constexpr double kRadiiOfMost = 1.5;
 // A span may be so much shorter than what the grid was fitted to before that is wasteful.
 constexpr double kShortestSpan = 0.5;
+constexpr double kLongestSpan = 1.05;
 
 constexpr std::size_t kFoundAtOnce = 256;
-constexpr std::size_t kCellsPerBody = 2;
+constexpr std::size_t kCellsPerBody = 1;
 constexpr std::size_t kExtraCells = 16;
+// So many cells round them bodies may come to before the next fit.
+constexpr std::uint32_t kBorder = 2;
 // With the margins, however the bodies lie.
-constexpr std::size_t kMostCellsPerBody = 24;
+constexpr std::size_t kMostCellsPerBody = 40;
 constexpr std::uint32_t kMostRows = 4;  // of cells, on which an end of a pair may lie
 
 // Bodies that turn may become faster than those that start by so much, near the end of the span.
@@ -44,8 +47,10 @@ Scalar sampled(std::vector<Scalar>& values, double q) {
 }  // namespace
 
 template <typename Scalar>
-void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s) {
-    if (must_fit(bodies.ids.size(), equal_radii, span_s)) fit(bodies, equal_radii, span_s);
+void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, std::span<const Vec> places_m,
+                               bool equal_radii, Scalar span_s) {
+    if (must_fit(bodies.ids.size(), equal_radii, span_s))
+        fit(bodies, places_m, equal_radii, span_s);
     ++spans_since_fit_;
     span_s_ = span_s;
     per_mps_ = Scalar(2) * span_s * per_m_;
@@ -54,10 +59,10 @@ void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, bool equal_radii, S
         for (const BodyId id : bodies.ids) order_.push_back(id.index);
     }
     if (equal_radii) {
-        find_cells<true>(bodies);
+        find_cells<true>(bodies, places_m);
         sort<true>(bodies);
     } else {
-        find_cells<false>(bodies);
+        find_cells<false>(bodies, places_m);
         sort<false>(bodies);
     }
     if (spans_since_fit_ == 1) fitted_strays_ = strays_.size();
@@ -66,14 +71,15 @@ void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, bool equal_radii, S
 template <typename Scalar>
 bool SweptPaths<Scalar>::must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const {
     return spans_since_fit_ >= kSpansPerFit || equal_radii != equal_radii_ ||
-           span_s > fitted_span_s_ ||
+           span_s > static_cast<Scalar>(kLongestSpan) * fitted_span_s_ ||
            span_s < static_cast<Scalar>(kShortestSpan) * fitted_span_s_ ||
-           strays_.size() > 2 * fitted_strays_ + bodies / 32 + 4 || bodies > 2 * fitted_bodies_ ||
+           strays_.size() > 2 * fitted_strays_ + bodies / 64 + 4 || bodies > 2 * fitted_bodies_ ||
            2 * bodies < fitted_bodies_;
 }
 
 template <typename Scalar>
-void SweptPaths<Scalar>::fit(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s) {
+void SweptPaths<Scalar>::fit(const Bodies<Scalar>& bodies, std::span<const Vec> places_m,
+                             bool equal_radii, Scalar span_s) {
     const std::size_t count = bodies.ids.size();
     const std::size_t stride = 1 + count / kSampledBodies;
     const auto sample = [&](auto&& value_of) {
@@ -84,12 +90,12 @@ void SweptPaths<Scalar>::fit(const Bodies<Scalar>& bodies, bool equal_radii, Sca
     };
     Vec low = Vec::Zero(), high = Vec::Zero();
     for (int axis = 0; axis < 2 && count > 0; ++axis) {
-        Scalar least = bodies.position_m[bodies.ids[0].index][axis], most = least;
+        Scalar least = places_m[bodies.ids[0].index][axis], most = least;
         for (const BodyId id : bodies.ids) {
-            least = std::min(least, bodies.position_m[id.index][axis]);
-            most = std::max(most, bodies.position_m[id.index][axis]);
+            least = std::min(least, places_m[id.index][axis]);
+            most = std::max(most, places_m[id.index][axis]);
         }
-        sample([&](std::uint32_t body) { return bodies.position_m[body][axis]; });
+        sample([&](std::uint32_t body) { return places_m[body][axis]; });
         const CrowdRange<Scalar> range = crowd_range(sample_);
         low[axis] = std::max(least, range.low - range.margin);
         high[axis] = std::min(most, range.high + range.margin);
@@ -120,7 +126,7 @@ void SweptPaths<Scalar>::reserve(std::size_t bodies) {
     for (std::vector<std::uint32_t>* by_body : {&order_, &cell_, &body_, &strays_}) {
         by_body->reserve(bodies);
     }
-    starts_.reserve(bodies);
+    starts_.reserve(bodies + 1);
     found_.reserve(most_found(bodies, kMostRows) + kFoundAtOnce);
     sample_.reserve(kSampledBodies);
 }
@@ -145,9 +151,9 @@ void SweptPaths<Scalar>::fit_cells(const Vec& low_m, const Vec& high_m, Scalar w
                       std::isfinite(extent.maxCoeff() * per_m_);
     if (!fits) per_m_ = cell_m_ = Scalar(0);
     margin_ = static_cast<std::uint32_t>(fits ? rows : Scalar(1));
-    columns_ = fits ? static_cast<std::uint32_t>(extent.x() * per_m_) + 2 : 0;
-    rows_ = fits ? static_cast<std::uint32_t>(extent.y() * per_m_) + 2 : 0;
-    const Scalar border = (static_cast<Scalar>(margin_) + Scalar(0.5)) * cell_m_;
+    columns_ = fits ? static_cast<std::uint32_t>(extent.x() * per_m_) + 1 + 2 * kBorder : 0;
+    rows_ = fits ? static_cast<std::uint32_t>(extent.y() * per_m_) + 1 + 2 * kBorder : 0;
+    const Scalar border = static_cast<Scalar>(margin_ + kBorder) * cell_m_;
     origin_m_ = low_m - Vec::Constant(border);
     width_ = columns_ + 2 * margin_;
     height_ = rows_ + 2 * margin_;
@@ -179,36 +185,32 @@ bool SweptPaths<Scalar>::is_known_order(const Bodies<Scalar>& bodies) const {
 
 template <typename Scalar>
 template <bool kEqualRadii>
-void SweptPaths<Scalar>::find_cells(const Bodies<Scalar>& bodies) {
+void SweptPaths<Scalar>::find_cells(const Bodies<Scalar>& bodies, std::span<const Vec> places_m) {
     const auto low = static_cast<float>(margin_);
-    const float high_x = static_cast<float>(margin_ + columns_);
-    const float high_y = static_cast<float>(margin_ + rows_);
-    const float longest = 2.0F * longest_way_;
+    const float high_x = std::nextafter(static_cast<float>(margin_ + columns_), 0.0F);
+    const float high_y = std::nextafter(static_cast<float>(margin_ + rows_), 0.0F);
+    const float way = 2.0F * longest_way_;
+    const StartRules<Scalar> rules = {
+        origin_m_, per_m_, per_mps_, {low, low, -way, -way}, {high_x, high_y, way, way}, width_};
     cell_.resize(bodies.slots());
-    starts_.resize(order_.size());
+    starts_.resize(order_.size() + 1);
     first_.assign(std::size_t{width_} * height_ + 2, 0);
     strays_.clear();
-    Start* start = starts_.data();
+    PathStart* start = starts_.data();
+    std::uint32_t *const counts = first_.data() + 2, *const cells = cell_.data();
+    const Vec *const positions = places_m.data(), *const velocities = bodies.velocity_mps.data();
     for (const std::uint32_t body : order_) {
-        const Vec& position = bodies.position_m[body];
-        const Vec& velocity = bodies.velocity_mps[body];
-        const float x = cells_x(position.x()), y = cells_y(position.y());
-        const auto way_x = static_cast<float>(velocity.x() * per_mps_);
-        const auto way_y = static_cast<float>(velocity.y() * per_mps_);
-        bool fits = x >= low && x < high_x && y >= low && y < high_y &&
-                    std::abs(way_x) <= longest && std::abs(way_y) <= longest;
+        bool fits = find_start<Scalar>(rules, positions[body], velocities[body], *start);
         if constexpr (!kEqualRadii) fits = fits && bodies.radius_m[body] <= largest_radius_m_;
         if (!fits) {
             strays_.push_back(body);
-            cell_[body] = kNoCell;
+            cells[body] = kNoCell;
             continue;
         }
-        const std::uint32_t cell =
-            static_cast<std::uint32_t>(static_cast<std::int32_t>(y)) * width_ +
-            static_cast<std::uint32_t>(static_cast<std::int32_t>(x));
-        cell_[body] = cell;
-        ++first_[cell + 2];
-        *start++ = {x, y, way_x, way_y, cell, body};
+        cells[body] = start->cell;
+        ++counts[start->cell];
+        start->body = body;
+        ++start;
     }
     starts_.resize(static_cast<std::size_t>(start - starts_.data()));
 }
@@ -220,16 +222,19 @@ void SweptPaths<Scalar>::sort(const Bodies<Scalar>& bodies) {
     std::uint32_t sum = 0;
     for (std::uint32_t& first : first_) first = sum += first;
     pad();
-    for (const Start& start : starts_) {
-        const std::uint32_t path = first_[start.cell + 1]++;
-        x_[path] = start.x;
-        y_[path] = start.y;
-        ahead_x_[path] = start.x + start.way_x;
-        ahead_y_[path] = start.y + start.way_y;
+    std::uint32_t *const next = first_.data() + 1, *const body = body_.data();
+    float *const x = x_.data(), *const y = y_.data();
+    float *const ahead_x = ahead_x_.data(), *const ahead_y = ahead_y_.data();
+    for (const PathStart& start : starts_) {
+        const std::uint32_t path = next[start.cell]++;
+        x[path] = start.x;
+        y[path] = start.y;
+        ahead_x[path] = start.x + start.way_x;
+        ahead_y[path] = start.y + start.way_y;
         if constexpr (!kEqualRadii) {
             radius_[path] = static_cast<float>(bodies.radius_m[start.body] * per_m_);
         }
-        body_[path] = start.body;
+        body[path] = start.body;
     }
     std::copy(body_.begin(), body_.end(), order_.begin());
     std::copy(strays_.begin(), strays_.end(),

@@ -17,6 +17,7 @@
 #include "common/physics/bodies.h"
 #include "common/physics/broadphase.h"
 #include "common/physics/swept_lanes.h"
+#include "common/physics/swept_start.h"
 
 namespace fts::physics {
 
@@ -36,8 +37,9 @@ class SweptPaths {
         Scalar tolerance_m = Scalar(0);
     };
 
-    // Sorts where everybody is at the start of a span of `span_s` >= 0.
-    void begin(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s);
+    // Sorts where everybody is at the start of a span of `span_s` >= 0: by slot in `places_m`.
+    void begin(const Bodies<Scalar>& bodies, std::span<const Vec> places_m, bool equal_radii,
+               Scalar span_s);
 
     std::span<const std::uint32_t> strays() const { return strays_; }
     bool is_stray(std::uint32_t body) const { return cell_[body] == kNoCell; }
@@ -71,24 +73,19 @@ class SweptPaths {
                            Visit&& visit) const;
 
   private:
-    struct Start {
-        float x, y;          // in cells
-        float way_x, way_y;  // twice the motion of the span
-        std::uint32_t cell, body;
-    };
-
     static constexpr std::uint32_t kNoCell = 0xffffffff;
     // By how many blurs a search goes further than it need.
     static constexpr float kNearBlurs = 4.0F;
 
     bool must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const;
-    void fit(const Bodies<Scalar>& bodies, bool equal_radii, Scalar span_s);
+    void fit(const Bodies<Scalar>& bodies, std::span<const Vec> places_m, bool equal_radii,
+             Scalar span_s);
     void reserve(std::size_t bodies);
     void fit_cells(const Vec& low_m, const Vec& high_m, Scalar way_m, std::size_t bodies);
     void fit_limits(bool equal_radii);
     bool is_known_order(const Bodies<Scalar>& bodies) const;
     template <bool kEqualRadii>
-    void find_cells(const Bodies<Scalar>& bodies);
+    void find_cells(const Bodies<Scalar>& bodies, std::span<const Vec> places_m);
     template <bool kEqualRadii>
     void sort(const Bodies<Scalar>& bodies);
     void pad();
@@ -129,7 +126,7 @@ class SweptPaths {
     Scalar span_s_ = Scalar(0);
     Scalar per_mps_ = Scalar(0);        // twice the cells that one metre a second leads in the span
     std::vector<std::uint32_t> order_;  // the bodies in the order of the last sort
-    std::vector<Start> starts_;
+    std::vector<PathStart> starts_;
     std::vector<std::uint32_t> cell_;   // by body; kNoCell for a stray
     std::vector<std::uint32_t> first_;  // by cell
     std::vector<float> x_, y_, ahead_x_, ahead_y_, radius_;

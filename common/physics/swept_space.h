@@ -53,12 +53,20 @@ class TorusSpace {
         box_ = box;
         extent_m_ = box.extent_m();
     }
-    // Only what is within `margin_m` of the box is covered.
-    void uncover(Scalar margin_m) {
-        covered_ = {box_.min_m.x() - margin_m, box_.min_m.y() - margin_m, box_.max_m.x() + margin_m,
-                    box_.max_m.y() + margin_m};
+    // Where everybody is when a stretch begins.
+    Box<Scalar> box() const {
+        return {box_.min_m.x(), box_.min_m.y(), box_.max_m.x(), box_.max_m.y()};
     }
-    // Every placed box is covered, and so are all before `uncover`.
+    // From now on this is covered, and nothing else.
+    void cover_only(const Box<Scalar>& box) { covered_ = box; }
+    // No image of a box overlaps what is covered when it keeps within this one by `margin_m`.
+    Box<Scalar> without_images(Scalar margin_m) const {
+        return {covered_.max_x_m - extent_m_.x() + margin_m,
+                covered_.max_y_m - extent_m_.y() + margin_m,
+                covered_.min_x_m + extent_m_.x() - margin_m,
+                covered_.min_y_m + extent_m_.y() - margin_m};
+    }
+    // And this.
     void cover(const Box<Scalar>& box) {
         covered_ = {
             std::min(covered_.min_x_m, box.min_x_m), std::min(covered_.min_y_m, box.min_y_m),

@@ -59,6 +59,30 @@ Scalar time_until_edge_of(const Rectangle& rectangle, const Vec2<Scalar>& positi
     return first;
 }
 
+// What is left of a platform's square when its edge is to be out of reach beyond doubt.
+template <typename Scalar>
+constexpr Scalar kWellInside = Scalar(0.999);
+
+template <typename Scalar>
+bool stays_on(const Disc& disc, const Vec2<Scalar>& position_m, const Vec2<Scalar>& way_m) {
+    const auto radius = static_cast<Scalar>(disc.radius_m);
+    return (position_m.cwiseAbs() + way_m).squaredNorm() < kWellInside<Scalar> * radius * radius;
+}
+
+template <typename Scalar>
+bool stays_on(const Ring& ring, const Vec2<Scalar>& position_m, const Vec2<Scalar>& way_m) {
+    const Scalar near = static_cast<Scalar>(ring.inner_radius_m) + way_m.x() + way_m.y();
+    return near * near < kWellInside<Scalar> * position_m.squaredNorm() &&
+           stays_on(Disc{ring.outer_radius_m}, position_m, way_m);
+}
+
+template <typename Scalar>
+bool stays_on(const Rectangle& rectangle, const Vec2<Scalar>& position_m,
+              const Vec2<Scalar>& way_m) {
+    const Vec2<Scalar> half = kWellInside<Scalar> * rectangle.half_extents_m.cast<Scalar>();
+    return ((position_m.cwiseAbs() + way_m).array() < half.array()).all();
+}
+
 }  // namespace
 
 template <typename Scalar>
@@ -90,11 +114,20 @@ Scalar time_until_edge(const Platform& platform, const Vec2<Scalar>& position_m,
         platform);
 }
 
+template <typename Scalar>
+bool surely_stays(const Platform& platform, const Vec2<Scalar>& position_m,
+                  const Vec2<Scalar>& way_m) {
+    return std::visit([&](const auto& shape) { return stays_on<Scalar>(shape, position_m, way_m); },
+                      platform);
+}
+
 template double time_until_contact(const Vec2<double>&, const Vec2<double>&, double);
 template float time_until_contact(const Vec2<float>&, const Vec2<float>&, float);
 template double time_until_wall(double, double);
 template float time_until_wall(float, float);
 template double time_until_edge(const Platform&, const Vec2<double>&, const Vec2<double>&);
 template float time_until_edge(const Platform&, const Vec2<float>&, const Vec2<float>&);
+template bool surely_stays(const Platform&, const Vec2<double>&, const Vec2<double>&);
+template bool surely_stays(const Platform&, const Vec2<float>&, const Vec2<float>&);
 
 }  // namespace fts::physics

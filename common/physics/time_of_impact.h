@@ -34,4 +34,10 @@ template <typename Scalar>
 Scalar time_until_edge(const Platform& platform, const Vec2<Scalar>& position_m,
                        const Vec2<Scalar>& velocity_mps);
 
+// Whether a way of at most `way_m` on each axis, not negative, leads to nowhere near the edge of
+// the platform: cheaper than to ask when.
+template <typename Scalar>
+bool surely_stays(const Platform& platform, const Vec2<Scalar>& position_m,
+                  const Vec2<Scalar>& way_m);
+
 }  // namespace fts::physics
