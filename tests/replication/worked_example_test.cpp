@@ -1,7 +1,9 @@
 // The worked examples of proto/WIRE.md, "Payloads", byte for byte.
 #include <gtest/gtest.h>
 
+#include "common/replication/control_events.h"
 #include "common/replication/delta.h"
+#include "common/replication/snapshot_codec.h"
 #include "common/replication/wire.h"
 
 namespace fts::replication {
@@ -88,6 +90,42 @@ TEST(WorkedExample, InputPacket) {
 TEST(WorkedExample, ControlMessage) {
     const Bytes expected = {0x1a, 0x04, 0x0a, 0x02, 'g', 'g'};
     EXPECT_EQ(encode(ClientMessage(ChatRequest{"gg"})), expected);
+}
+
+Prediction three_balls() {
+    Prediction expected{97, 100, {}};
+    for (std::uint16_t i = 0; i < 3; ++i) {
+        Expectation next;
+        next.state = ball(static_cast<std::uint16_t>(i + 1), 1000 * (i + 1), 500, 40, 0);
+        next.place_doubt = 4;
+        next.group = i;
+        expected.balls.push_back(next);
+    }
+    return expected;
+}
+
+std::vector<BallState> three_balls_at_100() {
+    return {ball(1, 1001, 500, 40, 0), ball(2, 2000, 500, 40, 0), ball(3, 3000, 500, 37, 0)};
+}
+
+TEST(WorkedExample, OfAResidualPart) {
+    const Bytes bytes{0x64, 0x03, 0x00, 0xc8, 0x33, 0x24, 0x31, 0x9d, 0x64, 0x91};
+    const auto parts = encode_balls(three_balls(), three_balls_at_100(), 1200);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(parts.front(), bytes);
+    EXPECT_EQ(decode_balls(three_balls(), bytes), three_balls_at_100());
+}
+
+TEST(WorkedExample, OfAControlPart) {
+    const Bytes bytes{0x64, 0x03, 0x22, 0x65, 0xe7, 0x34, 0x21};
+    std::vector<BallState> baseline = three_balls_at_100();
+    baseline[1].kind = static_cast<std::uint8_t>(BallKind::kPlayer);
+    const std::vector<ControlEvent> events{{98, 2, 127, 0, false}};
+    EXPECT_EQ(encode_events(baseline, 97, 100, events, three_balls_at_100()), bytes);
+    const auto part = decode_events(baseline, 97, bytes);
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->events, events);
+    EXPECT_EQ(part->outcome_digest, digest_of(three_balls_at_100()));
 }
 
 }  // namespace
