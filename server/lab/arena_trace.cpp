@@ -14,7 +14,6 @@ namespace fts::lab {
 namespace {
 
 using replication::BallState;
-using replication::ControlEvent;
 
 constexpr std::uint64_t kSeed = 1;
 
