@@ -31,15 +31,15 @@ constexpr double kMaxDiscreteRadiusRatio = 8.0;
 // Units of round-off of the largest length, over the smallest radius.
 constexpr double kExactErrorInUlps = 64.0;
 
-// Nanoseconds on the machine that the accuracy page was measured on, at 10,000 bodies.
+// Nanoseconds on the machine that the accuracy page was measured on, at 1,000 bodies.
 struct Cost {
     double per_body_tick;  // per substep
     double per_collision;
+    double of_float;  // over that of double
 };
-constexpr Cost kDiscreteCost = {20.0, 100.0};
-constexpr Cost kSweptCost = {150.0, 1500.0};
-constexpr Cost kEventCost = {0.5, 1900.0};
-constexpr double kFloatCostRatio = 0.85;
+constexpr Cost kDiscreteCost = {4.5, 220.0, 0.95};
+constexpr Cost kSweptCost = {30.0, 950.0, 1.05};
+constexpr Cost kEventCost = {1.0, 1400.0, 1.2};
 
 struct Scale {
     std::size_t bodies = 0;
@@ -146,7 +146,7 @@ Scale scale_of(const Scene& scene, const Fidelity& fidelity) {
 double cost_ns(const Cost& cost, const Scale& scale, std::uint32_t substeps, ScalarKind scalar) {
     const double ns =
         cost.per_body_tick * substeps + cost.per_collision * scale.collisions_per_body_tick;
-    return scalar == ScalarKind::kFloat ? kFloatCostRatio * ns : ns;
+    return scalar == ScalarKind::kFloat ? cost.of_float * ns : ns;
 }
 
 // Each further collision of a body within the tick multiplies what was wrong before it, by about
