@@ -4,6 +4,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "common/physics/simd_level.h"
+
 #if defined(__x86_64__)
 #define FTS_HAS_FOURS
 #include <immintrin.h>
@@ -123,7 +125,7 @@ FTS_AVX2 Filter<double>::Passed four_by_four(const Filter<double>& filter, std::
 }
 
 bool has_fours() {
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
+    static const bool has = is_supported(SimdLevel::kAvx2);
     return has;
 }
 

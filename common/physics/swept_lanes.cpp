@@ -1,6 +1,6 @@
 #include "common/physics/swept_lanes.h"
 
-#include <initializer_list>
+#include <cassert>
 
 #include "common/physics/swept_kernels.h"
 
@@ -65,38 +65,21 @@ struct Sse2Pack {
 #endif
 
 template <typename Pack>
-const LaneKernels* kernels_of(bool equal_radii) {
-    return equal_radii ? &SweptKernels<Pack, true>::kTable : &SweptKernels<Pack, false>::kTable;
+const LaneKernels& kernels_of(bool equal_radii) {
+    return equal_radii ? SweptKernels<Pack, true>::kTable : SweptKernels<Pack, false>::kTable;
 }
 
 }  // namespace
 
-const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii) {
-    switch (width) {
-        case LaneWidth::kPlain:
-            return kernels_of<PlainPack>(equal_radii);
-        case LaneWidth::kSse2:
-#if defined(__SSE2__)
-            return kernels_of<Sse2Pack>(equal_radii);
-#else
-            return nullptr;
-#endif
+const LaneKernels& lane_kernels(SimdLevel level, bool equal_radii) {
+    assert(is_supported(level));
 #if defined(__x86_64__)
-        case LaneWidth::kAvx2:
-            return __builtin_cpu_supports("avx2") ? &lane_kernels_avx2(equal_radii) : nullptr;
-#else
-        case LaneWidth::kAvx2:
-            return nullptr;
+    if (level >= SimdLevel::kAvx2) return lane_kernels_avx2(equal_radii);
 #endif
-    }
-    return nullptr;
-}
-
-const LaneKernels& lane_kernels(bool equal_radii) {
-    for (const LaneWidth width : {LaneWidth::kAvx2, LaneWidth::kSse2}) {
-        if (const LaneKernels* kernels = lane_kernels(width, equal_radii)) return *kernels;
-    }
-    return *lane_kernels(LaneWidth::kPlain, equal_radii);
+#if defined(__SSE2__)
+    if (level >= SimdLevel::kSse2) return kernels_of<Sse2Pack>(equal_radii);
+#endif
+    return kernels_of<PlainPack>(equal_radii);
 }
 
 }  // namespace fts::physics

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/physics/simd_level.h"
+
 namespace fts::physics {
 
 // So many floats after the last path may be read. They must be NaN, which is near to nothing.
@@ -89,11 +91,8 @@ struct LaneKernels {
                           void* whom);
 };
 
-enum class LaneWidth : std::uint8_t { kPlain, kSse2, kAvx2 };
-
-// Null where this program or this processor has not got it.
-const LaneKernels* lane_kernels(LaneWidth width, bool equal_radii);
-// The widest there are. Vectors of AVX-512 would be slower: few cells hold so many paths.
-const LaneKernels& lane_kernels(bool equal_radii);
+// Those of a level that the processor has. Above AVX2 there are none of their own, since few cells
+// hold so many paths: wider vectors would be slower.
+const LaneKernels& lane_kernels(SimdLevel level, bool equal_radii);
 
 }  // namespace fts::physics

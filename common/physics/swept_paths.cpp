@@ -247,7 +247,7 @@ void SweptPaths<Scalar>::pad() {
     const std::size_t paths = starts_.size();
     body_.resize(paths);
     found_.resize(most_found(paths, margin_) + kFoundAtOnce);
-    kernels_ = &lane_kernels(equal_radii_);
+    kernels_ = &lane_kernels(best_simd_level(), equal_radii_);
     for (std::vector<float>* lane : {&x_, &y_, &ahead_x_, &ahead_y_}) {
         lane->resize(paths + kMostLanes);
         std::fill_n(lane->begin() + static_cast<std::ptrdiff_t>(paths), kMostLanes, kNowhere);

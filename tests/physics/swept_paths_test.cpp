@@ -251,13 +251,12 @@ TEST(SweptLanes, find_the_same_on_every_instruction_set) {
         for (std::uint32_t rows = 4; rows < 12; ++rows) {
             const RowOfPaths paths = rows_of_paths(rows, equal_radii, dice);
             const Found plain =
-                all_found(*lane_kernels(LaneWidth::kPlain, equal_radii), paths.lanes);
+                all_found(lane_kernels(SimdLevel::kPlain, equal_radii), paths.lanes);
             EXPECT_GT(plain.size(), 100U);
-            for (const LaneWidth width : {LaneWidth::kSse2, LaneWidth::kAvx2}) {
-                const LaneKernels* kernels = lane_kernels(width, equal_radii);
-                if (kernels == nullptr) continue;
-                EXPECT_EQ(all_found(*kernels, paths.lanes), plain)
-                    << "width " << static_cast<int>(width);
+            for (const SimdLevel level : {SimdLevel::kSse2, SimdLevel::kAvx2}) {
+                if (!is_supported(level)) continue;
+                EXPECT_EQ(all_found(lane_kernels(level, equal_radii), paths.lanes), plain)
+                    << "level " << static_cast<int>(level);
             }
         }
     }
