@@ -113,10 +113,10 @@ void BucketCalendar::advance() {
         if (next >= nearest_far_) {
             fetch_far();
             next = next_occupied();
-            // None of them is within a round from now.
+            // None of them is within a round from now: the stretches are too short for what is
+            // left.
             if (next > nearest_far_) {
-                now_ = nearest_far_;
-                fetch_far();
+                spread();
                 continue;
             }
         }

@@ -6,7 +6,8 @@
 // dynamics simulations", 2007): a ring of buckets, each of them a short stretch of time and an
 // unordered list, and a heap of what is in the present bucket. Times beyond the ring wait in one
 // more list, which is gone through once in at least half a round. How long a bucket is suits the
-// times that are there at `rebase`, and at the first `top` after `reset`.
+// times that are there at `rebase`, at the first `top` after `reset`, and when the ring has run
+// empty.
 //
 // Not thread-safe. No allocation but in `reset`.
 #pragma once

@@ -47,13 +47,6 @@ void Calendar::remove(std::uint32_t body) {
     }
 }
 
-// Times that differed may have become equal, for which the order is by index: so all is sorted in
-// anew.
-void Calendar::rebase(double shift_s) {
-    for (std::uint32_t slot = kRoot; slot < end_; ++slot) at(slot).time_s -= shift_s;
-    for (std::uint32_t slot = end_; slot-- > kRoot;) sink(slot, Entry(at(slot)));
-}
-
 void Calendar::rise(std::uint32_t slot, const Entry& entry) {
     while (slot > kRoot && entry < at(parent_of(slot))) {
         put(slot, at(parent_of(slot)));

@@ -39,9 +39,6 @@ class Calendar {
     bool empty() const { return end_ == kRoot; }
     const Entry& top() const { return at(kRoot); }
 
-    // All times become earlier by `shift_s`. Linear in the number of bodies.
-    void rebase(double shift_s);
-
   private:
     // The children of slot s are the brood s - 2, and the root is the last of brood 0, so that all
     // broods begin at a cache line. Vacant slots hold the default Entry, which is after all others.

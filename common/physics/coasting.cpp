@@ -357,8 +357,9 @@ void Coasting<Scalar>::consider(std::uint32_t body, std::uint32_t other, Image i
     constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
     const Scalar reach_squared = reach_m * reach_m, rate = approach.rate();
     const Scalar apart_squared = approach.distance_squared();
-    // It takes at least the time of a head-on approach.
-    const Scalar known_best = static_cast<Scalar>(best.time_s - approach.from_s);
+    // It takes at least the time of a head-on approach. Times are as fine as the clock.
+    const double clock_s = best.time_s * std::numeric_limits<double>::epsilon();
+    const auto known_best = static_cast<Scalar>((best.time_s - approach.from_s) + clock_s);
     if (apart_squared - reach_squared > Scalar(-2) * kFilterSlack<Scalar> * rate * known_best) {
         return;
     }

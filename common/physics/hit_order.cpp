@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace fts::physics {
 namespace {
@@ -14,13 +15,25 @@ bool same_slots(const SlotPair& one, const SlotPair& other) {
     return one.slot_a == other.slot_a && one.slot_b == other.slot_b;
 }
 
-// For what is in order but for neighbours.
-void sort_neighbours(std::vector<SlotPair>& pairs) {
+// So few are sorted by moving each to its place.
+constexpr std::ptrdiff_t kFew = 16;
+
+void sort_few(std::span<SlotPair> pairs) {
     for (std::size_t k = 1; k < pairs.size(); ++k) {
         const SlotPair pair = pairs[k];
         std::size_t to = k;
         for (; to > 0 && comes_before(pair, pairs[to - 1]); --to) pairs[to] = pairs[to - 1];
         pairs[to] = pair;
+    }
+}
+
+// For what is in the order of slot_a; most of its groups are small, but one body may touch many.
+void sort_groups(std::vector<SlotPair>& pairs) {
+    for (auto first = pairs.begin(); first != pairs.end();) {
+        const auto end = std::find_if(
+            first, pairs.end(), [&](const SlotPair& pair) { return pair.slot_a != first->slot_a; });
+        end - first <= kFew ? sort_few({first, end}) : std::sort(first, end, comes_before);
+        first = end;
     }
 }
 
@@ -35,7 +48,7 @@ void HitOrder::sort(std::vector<SlotPair>& pairs, std::uint32_t slots) {
     } else {
         scatter(pairs, half_sorted_, 0);
         scatter(half_sorted_, pairs, digit_bits_);
-        sort_neighbours(pairs);
+        sort_groups(pairs);
     }
     pairs.erase(std::unique(pairs.begin(), pairs.end(), same_slots), pairs.end());
 }

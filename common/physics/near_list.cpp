@@ -62,7 +62,9 @@ Scalar NearList<Scalar>::margin_for(Scalar reach_m) const {
     const Scalar margin = std::min(static_cast<Scalar>(kLooks) * a_look, widest);
     if (!(margin > a_look)) return Scalar(0);
     // A pair is near through one image only.
-    if (box_ && !(Scalar(2) * (reach_m + margin) < box_->extent_m().minCoeff())) return Scalar(0);
+    if (box_ && !(Scalar(2) * (reach_m + margin + slop_m_) < box_->extent_m().minCoeff())) {
+        return Scalar(0);
+    }
     return margin;
 }
 
@@ -72,7 +74,10 @@ void NearList<Scalar>::make(const Discs<Scalar>& discs) {
     travelled_m_ = slop_m_;
     worst_shift_m_ = Scalar(0);
     shift_m_.assign(discs.count(), Scalar(0));
-    grid_.find_near(discs, margin_m_ + slop_m_, near_);
+    // A list for this look alone is made with the arithmetic that decides: places far away, which
+    // are coarse, must not widen the search for all. In a box no place is far.
+    const bool is_kept = margin_m_ > Scalar(0);
+    grid_.find_near(discs, is_kept || box_ ? margin_m_ + slop_m_ : Scalar(0), near_);
     picked_.resize(kPairsInCache);
     holds_ = true;
 }

@@ -39,8 +39,9 @@ class NearList {
         worst_shift_m_ = shift_m_[disc] > worst_shift_m_ ? shift_m_[disc] : worst_shift_m_;
     }
 
-    // Every pair whose distance is below the sum of its radii, each once, in any order: with a box
-    // (then all places must be inside) the distance to the nearest image. True when it has made
+    // Every pair whose distance is below the sum of its radii, in any order: with a box (then all
+    // places must be inside) the distance to the nearest image. Each once, but in a box so tight
+    // that a pair may be near through two images. True when it has made
     // the list anew.
     bool find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs);
 

@@ -162,11 +162,8 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
             inverse_mass_per_kg_.push_back(Scalar(1) / bodies.mass_kg[slot]);
         }
     }
-    if (!same_bodies || !same_radii) {
-        near_.fit(discs(), model_->periodic);
-        lists_until_order_ = 1;
-    }
-    if (!same_places) near_.forget();
+    if (!same_places || !same_radii) near_.fit(discs(), model_->periodic);
+    if (!same_bodies || !same_radii) lists_until_order_ = 1;
     forgotten_ = false;
     ahead_ = false;
 }

@@ -118,8 +118,7 @@ void SweptEngine<Scalar, Space>::begin_look(std::uint32_t look, Scalar until_s) 
         std::min(until_s_, look_until_s_ + static_cast<Scalar>(kSeenSlack) *
                                                std::numeric_limits<Scalar>::epsilon() * span_s_);
     queue_.begin(from_s_, seen_until_s_);
-    std::sort(kept_.begin(), kept_.end());
-    kept_before_ = std::ssize(kept_);
+    sort_out_kept();
     predict_everybody();
 }
 
@@ -206,7 +205,9 @@ void SweptEngine<Scalar, Space>::shorten_stretch(std::uint32_t body) {
     if constexpr (Space::kHasImages) {
         const Scalar boxes = space_.boxes_per_s(bodies_->velocity_mps[body]);
         const auto longest = static_cast<Scalar>(Space::kLongestWayInBoxes);
-        if (boxes * (until_s_ - now_s_) > Scalar(2) * longest) until_s_ = now_s_ + longest / boxes;
+        if (!(boxes * (until_s_ - now_s_) > Scalar(2) * longest)) return;
+        until_s_ = now_s_ + longest / boxes;
+        seen_until_s_ = std::min(seen_until_s_, until_s_);
     }
 }
 

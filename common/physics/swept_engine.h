@@ -63,6 +63,7 @@ class SweptEngine {
     bool run_stretch();
     std::uint32_t looks_for(Scalar span_s) const;
     void begin_look(std::uint32_t look, Scalar until_s);
+    void sort_out_kept();
     bool run_look();
     std::span<const Vec> places();
     void end_stretch(Scalar time_s);

@@ -26,7 +26,7 @@ struct PathLanes {
     const float* y;
     const float* ahead_x;  // where twice the motion of the span leads
     const float* ahead_y;
-    const float* radius;         // null when all are equal
+    const float* radius;         // not used when all are equal
     const std::uint32_t* first;  // of each cell, rows of `width` cells, and one more at the end
     std::uint32_t width, height;
     std::uint32_t paths;

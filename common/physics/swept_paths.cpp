@@ -139,9 +139,13 @@ void SweptPaths<Scalar>::fit_cells(const Vec& low_m, const Vec& high_m, Scalar w
     const Scalar spacing = std::sqrt(extent.x() * extent.y() / cells);
     const Scalar least_way = Scalar(0.01) * largest_radius_m_;
     const Scalar way = std::max(way_m, least_way);
-    constexpr Scalar kRounded = Scalar(1.01);
-    const Scalar reach = kRounded * (Scalar(2) * largest_radius_m_ + Scalar(2) * way);
     const Scalar wanted = std::max(Scalar(2) * largest_radius_m_, Scalar(0.7) * spacing);
+    // Of round-off, which grows with the number of columns.
+    constexpr auto kBlurOfAColumn =
+        static_cast<Scalar>(2.0F * kNearBlurs * kPlaceUnits * kFloatEpsilon);
+    const Scalar rounded =
+        Scalar(1.01) + std::min(kBlurOfAColumn * (extent.maxCoeff() / wanted), Scalar(1));
+    const Scalar reach = rounded * (Scalar(2) * largest_radius_m_ + Scalar(2) * way);
     const Scalar rows =
         std::clamp(std::floor(reach / wanted), Scalar(1), static_cast<Scalar>(kMostRows));
     cell_m_ = std::max({reach / rows, spacing / std::sqrt(static_cast<Scalar>(kCellsPerBody)),
@@ -353,8 +357,12 @@ CellWindow SweptPaths<Scalar>::prepare(const Touching& first, const Touching& se
         const bool asked = disc.radius_m > Scalar(0);
         const float x = cells_x(disc.position_m.x()), y = cells_y(disc.position_m.y());
         const auto radius = static_cast<float>(disc.radius_m * per_m_);
-        const float more = static_cast<float>(disc.tolerance_m * per_m_) + kNearBlurs * blur_;
         const float reach = radius + largest_radius_;
+        // A stray may be large, or far from the grid, and its place in it then is coarse.
+        const float coarse =
+            kPlaceUnits * kFloatEpsilon * (std::max(std::abs(x), std::abs(y)) + reach);
+        const float more =
+            static_cast<float>(disc.tolerance_m * per_m_) + kNearBlurs * blur_ + coarse;
         search.x[k] = x;
         search.y[k] = y;
         search.radius[k] = radius;

@@ -141,6 +141,18 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
     return found;
 }
 
+// Those of which something happened to one, or that were kept twice, are of no use any more.
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::sort_out_kept() {
+    std::erase_if(kept_, [&](const Hold& hold) {
+        return hold.count_a != known_[hold.a].count ||
+               (hold.b < kWallHold && hold.count_b != known_[hold.b].count);
+    });
+    std::sort(kept_.begin(), kept_.end());
+    kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
+    kept_before_ = std::ssize(kept_);
+}
+
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::collide_set(const Happening& event) {
     set_.begin(bodies_->slots());
@@ -217,5 +229,9 @@ template void SweptEngine<double, OpenSpace<double>>::collide_set(const Happenin
 template void SweptEngine<float, OpenSpace<float>>::collide_set(const Happening&);
 template void SweptEngine<double, TorusSpace<double>>::collide_set(const Happening&);
 template void SweptEngine<float, TorusSpace<float>>::collide_set(const Happening&);
+template void SweptEngine<double, OpenSpace<double>>::sort_out_kept();
+template void SweptEngine<float, OpenSpace<float>>::sort_out_kept();
+template void SweptEngine<double, TorusSpace<double>>::sort_out_kept();
+template void SweptEngine<float, TorusSpace<float>>::sort_out_kept();
 
 }  // namespace fts::physics

@@ -14,21 +14,26 @@ namespace {
 
 // Both calendars are told the same.
 struct Both {
-    explicit Both(std::uint32_t slots) {
+    explicit Both(std::uint32_t slots) : times_s(slots, kInfinite) {
         buckets.reset(slots);
         heap.reset(slots);
     }
     void set(std::uint32_t body, double time_s) {
+        times_s[body] = time_s;
         buckets.set(body, time_s);
         heap.set(body, time_s);
     }
     void remove(std::uint32_t body) {
+        times_s[body] = kInfinite;
         buckets.remove(body);
         heap.remove(body);
     }
     void rebase(double shift_s) {
         buckets.rebase(shift_s);
-        heap.rebase(shift_s);
+        for (std::uint32_t body = 0; body < times_s.size(); ++body) {
+            times_s[body] -= shift_s;
+            heap.set(body, times_s[body]);
+        }
     }
     void expect_same_top() {
         ASSERT_EQ(buckets.empty(), heap.empty());
@@ -36,6 +41,7 @@ struct Both {
         ASSERT_EQ(buckets.top().body, heap.top().body);
     }
 
+    std::vector<double> times_s;
     BucketCalendar buckets;
     Calendar heap;
 };

@@ -26,7 +26,7 @@ TEST(Calendar, equal_times_come_in_the_order_of_bodies) {
 }
 
 // Against a plain table that is searched through.
-TEST(Calendar, has_the_earliest_on_top_whatever_is_set_removed_and_rebased) {
+TEST(Calendar, has_the_earliest_on_top_whatever_is_set_and_removed) {
     constexpr std::uint64_t kSeed = 71;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
@@ -40,9 +40,6 @@ TEST(Calendar, has_the_earliest_on_top_whatever_is_set_removed_and_rebased) {
             if (what == 0) {
                 table[body] = kInfinite;
                 calendar.remove(body);
-            } else if (what == 1 && turn % 50 == 0) {
-                for (double& time_s : table) time_s -= 0.25;
-                calendar.rebase(0.25);
             } else {
                 table[body] = static_cast<double>(dice.below(64));
                 calendar.set(body, table[body]);

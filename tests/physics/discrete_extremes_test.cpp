@@ -12,7 +12,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTickS = 1.0 / 60.0;
 constexpr SolverChoice kDiscrete = {SolverKind::kDiscrete, 1};
 
 template <typename Scalar>
@@ -27,7 +26,7 @@ TYPED_TEST(DiscreteExtremes, parts_a_heap_of_balls_that_start_inside_each_other)
     Scene scene;
     for (int i = 0; i < 60; ++i) scene.bodies.push_back({dice.in_box(2.0), {0.0, 0.0}, 0.5, 1.0});
     World<TypeParam> world(scene, kDiscrete);
-    for (int tick = 0; tick < 3000; ++tick) world.step(static_cast<TypeParam>(kTickS));
+    for (int tick = 0; tick < 3000; ++tick) world.step(static_cast<TypeParam>(kTick));
     EXPECT_LE(world.deepest_overlap(), 0.01);
     EXPECT_EQ(world.kinetic_energy_j(), 0.0) << "being moved apart is no motion";
     EXPECT_TRUE(all_finite(world));
@@ -102,7 +101,7 @@ TYPED_TEST(DiscreteExtremes, lets_balls_come_and_go) {
         if (world.add({dice.in_box(8.0), dice.in_box(5.0), 0.4, 1.0})) ++added;
         if (tick % 50 == 0) world.remove(world.ids()[0]);
         const std::size_t before = world.size();
-        world.step(static_cast<TypeParam>(kTickS));
+        world.step(static_cast<TypeParam>(kTick));
         fallen += world.falls().size();
         ASSERT_EQ(world.size(), before - world.falls().size());
         ASSERT_TRUE(all_finite(world));
@@ -125,7 +124,7 @@ TYPED_TEST(DiscreteExtremes, finds_a_pair_however_far_out_and_whatever_else_ther
                         {{-1e9, -1e9}, {1e9, 1e9}, 1e-6, 1.0},
                         {{-1e9, 1e9}, {-1e9, 1e9}, 1e-6, 1e-9}};
         World<TypeParam> world(scene, kDiscrete);
-        for (int tick = 0; tick < 100; ++tick) world.step(static_cast<TypeParam>(kTickS));
+        for (int tick = 0; tick < 100; ++tick) world.step(static_cast<TypeParam>(kTick));
         EXPECT_EQ(world.audit().ball_collisions, 1U);
         EXPECT_TRUE(all_finite(world));
     }
@@ -150,7 +149,7 @@ TYPED_TEST(DiscreteExtremes, keeps_everybody_within_walls_and_never_overruns) {
     Scene scene = random_gas({.balls = 80, .half_width_m = 6.0, .max_speed_mps = 2000.0}, dice);
     World<TypeParam> world(scene, kDiscrete);
     for (int tick = 0; tick < 200; ++tick) {
-        const StepReport report = world.step(static_cast<TypeParam>(kTickS));
+        const StepReport report = world.step(static_cast<TypeParam>(kTick));
         ASSERT_FALSE(report.overrun);
         ASSERT_EQ(report.unspent_time_s, 0.0);
         for (const BodyId id : world.ids()) {

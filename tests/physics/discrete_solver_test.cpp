@@ -14,8 +14,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTickS = 1.0 / 60.0;
-
 SolverChoice discrete(std::uint32_t substeps = 1) {
     return {SolverKind::kDiscrete, substeps};
 }
@@ -84,8 +82,8 @@ TEST(DiscreteSolver, finds_what_looking_at_every_pair_finds_to_the_bit) {
         World<double> world(scene, discrete());
         OverlapReference reference(scene, model_of(scene));
         for (int tick = 0; tick < 80; ++tick) {
-            world.step(kTickS);
-            reference.step(kTickS);
+            world.step(kTick);
+            reference.step(kTick);
             expect_same_to_the_bit(world, reference);
             if (testing::Test::HasFailure()) return;
         }
@@ -109,8 +107,8 @@ TEST(DiscreteSolver, is_right_in_a_periodic_box_of_one_or_two_cells) {
         World<double> world(scene, discrete());
         OverlapReference reference(scene, model_of(scene));
         for (int tick = 0; tick < 60; ++tick) {
-            world.step(kTickS);
-            reference.step(kTickS);
+            world.step(kTick);
+            reference.step(kTick);
             expect_same_to_the_bit(world, reference);
             if (testing::Test::HasFailure()) return;
         }
@@ -127,7 +125,7 @@ TEST(DiscreteSolver, keeps_momentum_and_energy_to_round_off_over_ten_thousand_co
     for (const BodyId id : world.ids()) {
         scale_ns += world.body(id).mass_kg * world.body(id).velocity_mps.norm();
     }
-    while (world.audit().ball_collisions < 10000) world.step(kTickS);
+    while (world.audit().ball_collisions < 10000) world.step(kTick);
     EXPECT_LE(std::abs(world.kinetic_energy_j() - energy), 1e-12 * energy);
     EXPECT_LE((world.momentum_ns() - momentum).norm(), 1e-12 * scale_ns);
     EXPECT_LE(world.audit().worst_energy_error, 1e-14);
@@ -176,8 +174,8 @@ TEST(DiscreteSolver, keeps_the_mirror_image_of_a_scene_its_mirror_image) {
     }
     World<double> world(scene, discrete(2)), mirror(mirrored, discrete(2));
     for (int tick = 0; tick < 300; ++tick) {
-        world.step(kTickS);
-        mirror.step(kTickS);
+        world.step(kTick);
+        mirror.step(kTick);
     }
     EXPECT_GT(world.audit().ball_collisions, 200U);
     for (const BodyId id : world.ids()) {
@@ -192,7 +190,7 @@ double direction_after_glancing_hit_rad(const SolverChoice& choice, double start
     Scene scene;
     scene.bodies = {ball({-start_m, offset_m}, {60.0, 0.0}), ball({0.0, 0.0}, {0.0, 0.0})};
     World<double> world(scene, choice);
-    for (int tick = 0; tick < 8; ++tick) world.step(kTickS);
+    for (int tick = 0; tick < 8; ++tick) world.step(kTick);
     const Vec2d velocity = world.body(world.ids()[0]).velocity_mps;
     return std::atan2(velocity.y(), velocity.x());
 }
@@ -224,7 +222,7 @@ TEST(DiscreteSolver, lets_fast_balls_pass_through_each_other_where_swept_does_no
     Scene scene;
     scene.bodies = {ball({-10.0, 0.0}, {1200.0, 0.0}), ball({10.0, 0.0}, {-1200.0, 0.0})};
     World<double> fast(scene, discrete()), exact(scene), fine(scene, discrete(64));
-    for (World<double>* world : {&fast, &exact, &fine}) world->step(kTickS);
+    for (World<double>* world : {&fast, &exact, &fine}) world->step(kTick);
     EXPECT_EQ(fast.audit().ball_collisions, 0U);
     EXPECT_EQ(exact.audit().ball_collisions, 1U);
     EXPECT_EQ(fine.audit().ball_collisions, 1U);
@@ -244,8 +242,8 @@ TEST(DiscreteSolver, gives_equal_balls_the_same_bits_by_the_general_way) {
         other.bodies.push_back(ball({2e6, 0.0}, {0.0, 0.0}, 0.5, kInfinite));
         World<double> alone(scene, discrete()), accompanied(other, discrete());
         for (int tick = 0; tick < 120; ++tick) {
-            alone.step(kTickS);
-            accompanied.step(kTickS);
+            alone.step(kTick);
+            accompanied.step(kTick);
         }
         EXPECT_GT(alone.audit().ball_collisions, 20U);
         for (const BodyId id : alone.ids()) {
@@ -259,8 +257,8 @@ TEST(DiscreteSolver, does_not_change_when_it_is_looked_at) {
     const Scene scene = walled_gas(4, 8.0, 60);
     World<double> watched(scene, discrete()), alone(scene, discrete());
     for (int tick = 0; tick < 200; ++tick) {
-        watched.step(kTickS);
-        alone.step(kTickS);
+        watched.step(kTick);
+        alone.step(kTick);
         watched.state_hash();
         if (tick % 7 == 0) {  // somebody else's hand: the copy is made anew
             const BodyId id = watched.ids()[3];
@@ -290,9 +288,9 @@ TEST(DiscreteSolver, golden_hash_in_single_precision) {
 TEST(DiscreteSolver, asks_for_no_memory_once_warm) {
     for (const Scene& scene : {walled_gas(31, 8.0, 60), periodic_gas(31, 8.0, 60)}) {
         World<double> world(scene, discrete());
-        for (int tick = 0; tick < 600; ++tick) world.step(kTickS);
+        for (int tick = 0; tick < 600; ++tick) world.step(kTick);
         const std::size_t before = allocations();
-        for (int tick = 0; tick < 300; ++tick) world.step(kTickS);
+        for (int tick = 0; tick < 300; ++tick) world.step(kTick);
         EXPECT_EQ(allocations(), before);
     }
 }
@@ -311,8 +309,8 @@ TEST(DiscreteSolver, never_reads_radii_and_masses_that_are_all_alike) {
     const auto one = make_discrete_solver<double>(1), other = make_discrete_solver<double>(1);
     Record<double> record, record_of_other;
     for (int tick = 0; tick < 100; ++tick) {
-        one->drift(plain, model, kTickS, record);
-        other->drift(poisoned, model, kTickS, record_of_other);
+        one->drift(plain, model, kTick, record);
+        other->drift(poisoned, model, kTick, record_of_other);
     }
     one->synchronise(plain);
     other->synchronise(poisoned);

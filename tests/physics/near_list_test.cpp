@@ -19,8 +19,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTickS = 1.0 / 60.0;
-
 std::vector<SimdLevel> levels_of_this_processor() {
     std::vector<SimdLevel> levels;
     for (const SimdLevel level :
@@ -180,7 +178,7 @@ std::vector<Scalar> state_after_a_life(SimdLevel level, const Kind& kind, std::u
     const auto solver = make_discrete_solver<Scalar>(2, level);
     Record<Scalar> record;
     for (int tick = 0; tick < 200; ++tick) {
-        solver->drift(bodies, model, static_cast<Scalar>(kTickS), record);
+        solver->drift(bodies, model, static_cast<Scalar>(kTick), record);
     }
     solver->synchronise(bodies);
     EXPECT_GT(record.audit.ball_collisions, 100U);
@@ -238,6 +236,18 @@ TEST(HitOrder, is_by_the_lower_slot_then_the_other_and_each_pair_once) {
             }
         }
     }
+}
+
+// As a giant has that lands on a beach.
+TEST(HitOrder, holds_where_one_body_touches_all_others) {
+    constexpr std::uint32_t kGrains = 100'000;
+    Dice dice(9);
+    std::vector<SlotPair> hits;
+    for (std::uint32_t grain = 1; grain <= kGrains; ++grain) hits.push_back({0, grain, 0, grain});
+    for (std::size_t k = hits.size() - 1; k > 0; --k) std::swap(hits[k], hits[dice.below(k + 1)]);
+    HitOrder().sort(hits, kGrains + 1);
+    ASSERT_EQ(hits.size(), kGrains);
+    for (std::uint32_t k = 0; k < kGrains; ++k) ASSERT_EQ(hits[k].slot_b, k + 1);
 }
 
 }  // namespace

@@ -195,6 +195,22 @@ TEST(Periodic, a_collision_that_makes_a_light_ball_very_fast_loses_nobody) {
     EXPECT_NEAR(world.kinetic_energy_j() / energy, 1.0, 1e-12);
 }
 
+// Each is almost twice as fast as what hit it: the last goes round hundreds of times in one tick.
+TEST(Periodic, a_row_of_ever_lighter_balls_ends_in_one_that_goes_round_and_round) {
+    Scene scene = empty_torus(100, 100);
+    for (int i = 0; i < 14; ++i) {
+        const Vec2d place(2.0 * i, 2.0 * i);
+        scene.bodies.push_back({place, Vec2d::Zero(), 0.5, std::pow(10.0, 8 - i)});
+    }
+    scene.bodies.front().velocity_mps = Vec2d(20.0, 20.0) / kTick;
+    World<double> world(scene);
+    const double energy = world.kinetic_energy_j();
+    EXPECT_GE(world.step(kTick).events, 13U);
+    const double fastest_mps = world.body(world.ids().back()).velocity_mps.norm();
+    EXPECT_GT(fastest_mps * kTick, 100.0 * 100.0);
+    EXPECT_NEAR(world.kinetic_energy_j() / energy, 1.0, 1e-12);
+}
+
 TEST(Periodic, at_a_million_radii_a_tick_is_exact_or_an_overrun) {
     Scene scene = empty_torus(10, 10);
     const double speed = 1e6 * 0.5 / kTick;

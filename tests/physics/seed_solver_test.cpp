@@ -11,8 +11,6 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kTickS = 1.0 / 60.0;
-
 template <typename Scalar>
 class SeedSolver : public testing::Test {};
 using Scalars = testing::Types<double, float>;
@@ -60,7 +58,7 @@ TYPED_TEST(SeedSolver, exchanges_the_velocities_of_equal_balls_head_on) {
     Scene scene;
     scene.bodies = {{{-1.05, 0.0}, {3.0, 0.0}, 1.0, 1.0}, {{1.05, 0.0}, {-2.0, 0.0}, 1.0, 1.0}};
     World<TypeParam> world(scene, seed_solver(4));
-    for (int tick = 0; tick < 30; ++tick) world.step(static_cast<TypeParam>(kTickS));
+    for (int tick = 0; tick < 30; ++tick) world.step(static_cast<TypeParam>(kTick));
     EXPECT_EQ(world.audit().ball_collisions, 1U) << "parted balls are not answered again";
     const auto view = [&](std::size_t i) { return world.body(world.ids()[i]); };
     EXPECT_NEAR(static_cast<double>(view(0).velocity_mps.x()), -2.0, tolerance<TypeParam>());
@@ -77,7 +75,7 @@ TYPED_TEST(SeedSolver, keeps_energy_and_momentum_as_well_as_sines_and_cosines_do
     World<TypeParam> world(scene, seed_solver(2));
     const double energy = world.kinetic_energy_j();
     const Vec2d momentum = world.momentum_ns();
-    for (int tick = 0; tick < 600; ++tick) world.step(static_cast<TypeParam>(kTickS));
+    for (int tick = 0; tick < 600; ++tick) world.step(static_cast<TypeParam>(kTick));
     EXPECT_GT(world.audit().ball_collisions, 500U);
     EXPECT_LE(std::abs(world.kinetic_energy_j() / energy - 1.0), 10 * tolerance<TypeParam>());
     EXPECT_LE((world.momentum_ns() - momentum).norm(), 1e3 * tolerance<TypeParam>());
@@ -122,7 +120,7 @@ TYPED_TEST(SeedSolver, reflects_from_walls_and_drops_who_is_off) {
     scene.platform = Disc{4.5};
     scene.bodies = {{{3.9, 0.0}, {12.0, 0.0}, 1.0, 1.0}, {{-4.4, 0.0}, {-60.0, 0.0}, 0.1, 1.0}};
     World<TypeParam> world(scene, seed_solver());
-    world.step(static_cast<TypeParam>(kTickS));
+    world.step(static_cast<TypeParam>(kTick));
     EXPECT_EQ(world.audit().wall_collisions, 2U);
     ASSERT_EQ(world.falls().size(), 1U);
     ASSERT_EQ(world.size(), 1U);
@@ -136,7 +134,7 @@ TYPED_TEST(SeedSolver, lets_coincident_centres_be_until_they_have_moved_on) {
     World<TypeParam> world(scene, seed_solver());
     world.step(TypeParam(0));
     EXPECT_TRUE(world.contacts().empty());
-    world.step(static_cast<TypeParam>(kTickS));
+    world.step(static_cast<TypeParam>(kTick));
     EXPECT_LE(world.deepest_overlap(), 1e-6);
     EXPECT_TRUE(all_finite(world));
 }

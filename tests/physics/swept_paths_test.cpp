@@ -160,6 +160,42 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
     EXPECT_GT(touches, 500U);
 }
 
+// A place is as coarse as the stray that asks is large.
+TEST(SweptPaths, find_what_touches_a_stray_that_is_far_larger_than_all) {
+    constexpr std::uint64_t kSeed = 65;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    constexpr double kPebbleM = 1e-4;
+    for (const double planet_m : {1.0, 10.0, 100.0, 1e4}) {
+        SCOPED_TRACE(planet_m);
+        Bodies<double> all;
+        for (int i = 0; i < 400; ++i) {
+            const double x = 1e-3 * i;
+            // On its surface, or just above.
+            const double gap = i % 2 == 0 ? 0.0 : dice.of_any_size(1e-16, 1e-5) * planet_m;
+            const double reach = planet_m + kPebbleM + gap;
+            const double y = std::sqrt(reach * reach - x * x) - planet_m;
+            all.add({x, y}, {0.0, 0.0}, kPebbleM, 1.0);
+        }
+        const std::uint32_t planet = all.add({0.0, -planet_m}, {0.0, 0.0}, planet_m, 1e9).index;
+        SweptPaths<double> paths;
+        paths.begin(all, all.position_m, false, 1.0 / 60.0);
+        ASSERT_TRUE(paths.is_stray(planet));
+        std::set<std::uint32_t> touching;
+        paths.for_each_touching({all.position_m[planet], planet_m, 0.0}, {}, 0.0,
+                                [&](std::uint32_t other) { touching.insert(other); });
+        std::size_t wanted = 0;
+        for (std::uint32_t other = 0; other < planet; ++other) {
+            if (paths.is_stray(other)) continue;
+            const double distance_m = (all.position_m[planet] - all.position_m[other]).norm();
+            if (distance_m > planet_m + kPebbleM) continue;
+            EXPECT_TRUE(touching.contains(other)) << other;
+            ++wanted;
+        }
+        EXPECT_GT(wanted, 50U);
+    }
+}
+
 // Where nothing is equal to the others, or can be held in numbers, everybody is a stray.
 TEST(SweptPaths, leave_what_they_cannot_hold_to_others) {
     Bodies<double> all;
