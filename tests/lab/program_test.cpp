@@ -1,4 +1,6 @@
 // fts-lab as people run it: what it writes, and how it ends.
+#include "tests/lab/program.h"
+
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -21,22 +23,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-struct Ended {
-    int code = 0;
-    std::string output;
-};
-
-Ended lab(const std::vector<std::string>& arguments) {
-    harness::Process process(FTS_LAB_PROGRAM, arguments);
-    const int code = process.wait(120.0);
-    return {code, process.output()};
-}
-
-std::string content_of(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class Lab : public testing::Test {
   protected:

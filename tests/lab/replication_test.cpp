@@ -1,7 +1,4 @@
 // fts-lab replication: what it writes, how it ends, and what our ways of coding promise.
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "server/lab/replication_study.h"
-#include "tests/harness/process.h"
 #include "tests/harness/temp_folder.h"
+#include "tests/lab/program.h"
 
 namespace fts::lab {
 namespace {
@@ -60,21 +57,9 @@ TEST(ReplicationStudy, needs_no_more_bits_for_a_thousand_balls_than_was_asked_fo
               rows.at("the game's delta format").bits_per_ball);
 }
 
-struct Ended {
-    int code = 0;
-    std::string output;
-};
-
 Ended replication(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "replication");
-    harness::Process process(FTS_LAB_PROGRAM, arguments);
-    const int code = process.wait(120.0);
-    return {code, process.output()};
-}
-
-std::string content_of(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return lab(arguments);
 }
 
 TEST(ReplicationCommand, says_everything_to_programs_and_draws_it) {
