@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "server/lab/digits.h"
 #include "server/lab/pareto.h"
 
 namespace fts::lab {
@@ -14,15 +15,9 @@ constexpr double kMaxSecondsOfARow = 60.0;
 // What `seed` needs at least to look at one pair, to know before the first tick.
 constexpr double kLeastSecondsOfAPair = 1e-9;
 
-std::string plain(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
 std::string command_for(const CompareRequest& request) {
-    return "fts-lab compare " + request.scene_name + " --seconds " + plain(request.seconds) +
-           " --rate " + plain(request.rate_hz);
+    return "fts-lab compare " + request.scene_name + " --seconds " +
+           with_digits("%.6g", request.seconds) + " --rate " + with_digits("%.6g", request.rate_hz);
 }
 
 // Why a row would take minutes; empty when it would not.

@@ -4,16 +4,11 @@
 #include <cstdio>
 
 #include "server/lab/compare.h"
+#include "server/lab/digits.h"
 #include "server/lab/text_table.h"
 
 namespace fts::lab {
 namespace {
-
-std::string with_digits(const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
 
 std::string error_text(const std::optional<double>& value) {
     if (!value) return "-";

@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "server/lab/digits.h"
 
 namespace fts::lab {
 namespace {
-
-std::string plain(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
 
 // 1, 2 or 5 times a power of ten, so that a span has about `count` of it.
 double nice_step(double span, double count) {
@@ -35,7 +30,7 @@ void write(Tick& tick, int power, bool powers_only) {
     if (powers_only) {
         tick.power_of_10 = power;
     } else {
-        tick.label = plain(tick.value);
+        tick.label = with_digits("%.6g", tick.value);
     }
 }
 
@@ -114,7 +109,7 @@ std::vector<Tick> AxisScale::linear_ticks() const {
         Tick tick{static_cast<double>(i) * minor, "", std::nullopt};
         const double steps = tick.value / step;
         if (std::abs(steps - std::round(steps)) < 1e-6)
-            tick.label = plain(std::round(steps) * step);
+            tick.label = with_digits("%.6g", std::round(steps) * step);
         ticks.push_back(tick);
     }
     return ticks;
@@ -136,7 +131,7 @@ std::vector<Tick> AxisScale::log_ticks() const {
             if (lead == 1 && power % every == 0) {
                 write(tick, power, powers_only);
             } else if (label_within && (lead == 2 || lead == 5)) {
-                tick.label = plain(tick.value);
+                tick.label = with_digits("%.6g", tick.value);
             } else if (lead != 1 && decades > 5) {
                 continue;
             }

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "common/physics/world.h"
 #include "server/lab/cost.h"
+#include "server/lab/digits.h"
 #include "tests/accuracy/study_scenes.h"
 
 namespace fts::accuracy {
@@ -28,12 +28,6 @@ constexpr double kCollisionsOfABallToDiverge = 60.0;
 // The exact ones, of which there can be many in a tick, are what takes the time.
 constexpr lab::SamplingLimits kSampling = {
     .collisions = 1000, .work_of_a_tick = 1e6, .work = 1.5e6, .work_of_reference = 6e6};
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
-}
 
 Json figure(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
@@ -236,10 +230,12 @@ const std::vector<std::size_t>& cost_sizes() {
 }
 
 std::string accuracy_key(const std::string& scene, double speed, const Setting& setting) {
-    return "accuracy, " + scene + ", " + number(speed) + " r/tick, " + to_string(setting);
+    return "accuracy, " + scene + ", " + lab::with_digits("%.4g", speed) + " r/tick, " +
+           to_string(setting);
 }
 std::string cost_key(const std::string& scene, double speed, const Setting& setting) {
-    return "cost, " + scene + ", " + number(speed) + " r/tick, " + to_string(setting);
+    return "cost, " + scene + ", " + lab::with_digits("%.4g", speed) + " r/tick, " +
+           to_string(setting);
 }
 std::string drift_key(const Setting& setting) {
     return "drift, " + to_string(setting);

@@ -1,10 +1,10 @@
 // The study's tables.
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <thread>
 
+#include "server/lab/digits.h"
 #include "server/lab/text_table.h"
 #include "tests/accuracy/cells.h"
 #include "tests/accuracy/figures.h"
@@ -15,12 +15,7 @@ namespace {
 
 using lab::Setting;
 using lab::TextTable;
-
-std::string formatted(const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
+using lab::with_digits;
 
 std::optional<double> number_in(const Json& cell, const char* field) {
     if (!cell.is_object() || !cell.contains(field) || !cell[field].is_number()) return std::nullopt;
@@ -29,12 +24,12 @@ std::optional<double> number_in(const Json& cell, const char* field) {
 
 std::string error_text(const std::optional<double>& value) {
     if (!value) return "";
-    return *value == 0.0 ? "0" : formatted("%.1e", std::abs(*value));
+    return *value == 0.0 ? "0" : with_digits("%.1e", std::abs(*value));
 }
 
 std::string plain_text(const std::optional<double>& value) {
     if (!value) return "";
-    return formatted(std::abs(*value) < 100.0 ? "%.3g" : "%.0f", *value);
+    return with_digits(std::abs(*value) < 100.0 ? "%.3g" : "%.0f", *value);
 }
 
 Table vector_table(const CellStore& cells) {
@@ -76,10 +71,10 @@ Table choice_table(const CellStore& cells, const char* name, bool coasting) {
     constexpr double kTolerances[] = {0.1, 0.01, 1e-3, 1e-5, 1e-9};
     std::vector<std::string> heads = {"radii a tick"};
     for (const double tolerance : kTolerances)
-        heads.push_back("E <= " + formatted("%g", tolerance));
+        heads.push_back("E <= " + with_digits("%g", tolerance));
     TextTable table(heads);
     for (const double speed : speeds()) {
-        std::vector<std::string> row = {formatted("%g", speed)};
+        std::vector<std::string> row = {with_digits("%g", speed)};
         for (const double tolerance : kTolerances) {
             std::optional<double> least;
             std::string choice = "none";
@@ -104,7 +99,7 @@ Table samples_table(const CellStore& cells) {
     const Setting swept{{physics::SolverKind::kSwept, 1}, physics::ScalarKind::kDouble};
     for (const double speed : speeds()) {
         const Json cell = cells.find(accuracy_key("gas-medium", speed, swept));
-        table.add({formatted("%g", speed), plain_text(number_in(cell, "ticks")),
+        table.add({with_digits("%g", speed), plain_text(number_in(cell, "ticks")),
                    plain_text(number_in(cell, "collisions")),
                    plain_text(number_in(cell, "too_busy"))});
     }

@@ -1,11 +1,11 @@
 #include "tests/bench/speed_tables.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <optional>
 
 #include "server/lab/bench/engine.h"
+#include "server/lab/digits.h"
 #include "server/lab/text_table.h"
 #include "tests/bench/bench_sets.h"
 
@@ -15,21 +15,11 @@ namespace {
 using lab::BenchResult;
 using lab::BenchScene;
 using lab::TextTable;
+using lab::with_digits;
 using Results = std::vector<BenchResult>;
-
-std::string with_digits(const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
 
 std::string ns_text(double ns) {
     return with_digits(ns < 10.0 ? "%.2f" : ns < 100.0 ? "%.1f" : "%.0f", ns);
-}
-
-std::string error_text(double error) {
-    if (error == 0.0) return "0";
-    return error < lab::kEnergyLost ? with_digits("%.1e", error) : "not finite";
 }
 
 BenchScene scene_at(std::size_t balls, double packing, double speed) {
@@ -101,7 +91,7 @@ accuracy::Table laws_table(const Results& results) {
             row.insert(
                 row.end(),
                 {ns_text(result->ns_per_ball_tick), faster ? with_digits("%.3g", *faster) : "-",
-                 error_text(result->laws.energy_error),
+                 lab::energy_text(result->laws.energy_error),
                  result->laws.head_on ? with_digits("%.0f", result->laws.head_on->per_1000())
                                       : "-"});
         }

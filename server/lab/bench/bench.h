@@ -38,6 +38,9 @@ std::optional<double> times_faster_than_chipmunk(const std::vector<BenchResult>&
 const BenchResult* find_result(const std::vector<BenchResult>& results, const std::string& engine,
                                const BenchScene& scene);
 
+// A relative error, with one digit after the point; "not finite" from kEnergyLost on.
+std::string energy_text(double error);
+
 // For people: a table for each scene, with a key beneath.
 std::string table_of(const std::vector<BenchResult>& results);
 // For programs. What does not apply is null.

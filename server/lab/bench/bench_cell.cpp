@@ -1,23 +1,17 @@
 #include "server/lab/bench/bench_cell.h"
 
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 #include <variant>
 
 #include "common/physics/generator.h"
 #include "server/lab/bench/engine.h"
+#include "server/lab/digits.h"
 
 namespace fts::lab {
 namespace {
 
 constexpr std::uint64_t kSeedOfScenes = 2013;
-
-std::string short_number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
 
 // What follows "KEY:" in one part of a name.
 template <typename Value>
@@ -43,8 +37,8 @@ std::string grouped(std::size_t number) {
 std::string name_of(const BenchCell& cell) {
     const BenchScene& scene = cell.scene;
     return cell.engine + "/N:" + std::to_string(scene.balls) +
-           "/packing:" + short_number(scene.packing) + "/radii:" + to_string(scene.radii) +
-           "/speed:" + short_number(scene.radii_per_tick);
+           "/packing:" + with_digits("%g", scene.packing) + "/radii:" + to_string(scene.radii) +
+           "/speed:" + with_digits("%g", scene.radii_per_tick);
 }
 
 std::optional<BenchCell> cell_from(const std::string& name) {
@@ -62,8 +56,9 @@ std::optional<BenchCell> cell_from(const std::string& name) {
 }
 
 std::string text_of(const BenchScene& scene) {
-    return grouped(scene.balls) + " balls, packing " + short_number(scene.packing) + ", " +
-           to_string(scene.radii) + " radii, " + short_number(scene.radii_per_tick) + " r a tick";
+    return grouped(scene.balls) + " balls, packing " + with_digits("%g", scene.packing) + ", " +
+           to_string(scene.radii) + " radii, " + with_digits("%g", scene.radii_per_tick) +
+           " r a tick";
 }
 
 std::string reason_not_to_run(const BenchCell& cell) {

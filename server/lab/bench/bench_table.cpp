@@ -1,24 +1,13 @@
 // Results as tables for the terminal, and as JSON.
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "server/lab/bench/bench.h"
+#include "server/lab/digits.h"
 #include "server/lab/text_table.h"
 
 namespace fts::lab {
 namespace {
-
-std::string formatted(const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-std::string energy_text(double error) {
-    if (error == 0.0) return "0";
-    return error < kEnergyLost ? formatted("%.1e", error) : "not finite";
-}
 
 std::vector<std::string> bench_row(const std::vector<BenchResult>& results,
                                    const BenchResult& result) {
@@ -28,11 +17,11 @@ std::vector<std::string> bench_row(const std::vector<BenchResult>& results,
     const auto faster = times_faster_than_chipmunk(results, result);
     const bool is_floor = engine != nullptr && engine->is_floor;
     return {title,
-            formatted(result.ns_per_ball_tick < 10.0 ? "%.2f" : "%.1f", result.ns_per_ball_tick),
-            result.collisions_per_s ? formatted("%.3g", *result.collisions_per_s) : "-",
+            with_digits(result.ns_per_ball_tick < 10.0 ? "%.2f" : "%.1f", result.ns_per_ball_tick),
+            result.collisions_per_s ? with_digits("%.3g", *result.collisions_per_s) : "-",
             is_floor ? "-" : energy_text(result.laws.energy_error),
-            result.laws.head_on ? formatted("%.0f", result.laws.head_on->per_1000()) : "-",
-            faster ? formatted(*faster < 10.0 ? "%.2f" : "%.1f", *faster) : "-"};
+            result.laws.head_on ? with_digits("%.0f", result.laws.head_on->per_1000()) : "-",
+            faster ? with_digits(*faster < 10.0 ? "%.2f" : "%.1f", *faster) : "-"};
 }
 
 nlohmann::ordered_json bench_json(const std::vector<BenchResult>& results,
@@ -66,6 +55,11 @@ nlohmann::ordered_json bench_json(const std::vector<BenchResult>& results,
 }
 
 }  // namespace
+
+std::string energy_text(double error) {
+    if (error == 0.0) return "0";
+    return error < kEnergyLost ? with_digits("%.1e", error) : "not finite";
+}
 
 std::string table_of(const std::vector<BenchResult>& results) {
     std::string out;
