@@ -127,8 +127,8 @@ DriftReport<Scalar> World<Scalar>::Impl::step_with_drag(Scalar span_s) {
     };
     const auto time_of = [&](Scalar slow_s) {
         const double felt_s = static_cast<double>(slow_s) / pace_before;
-        const double passed_s = -std::log1p(-std::min(1.0, drag_per_s * felt_s)) / drag_per_s;
-        return std::min(static_cast<Scalar>(passed_s), span_s);
+        const double lost = std::clamp(drag_per_s * felt_s, 0.0, 1.0);
+        return std::min(static_cast<Scalar>(span_of_decay(lost) / drag_per_s), span_s);
     };
     const auto pace_at = [&](Scalar passed_s) {
         return pace_before * decay(drag_per_s * static_cast<double>(passed_s)).factor;

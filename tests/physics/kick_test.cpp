@@ -1,6 +1,7 @@
 #include "common/physics/kick.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -38,6 +39,42 @@ TEST(Decay, is_right_at_its_ends) {
     EXPECT_EQ(decay(1e300).mean, 1e-300);
     EXPECT_EQ(decay(std::numeric_limits<double>::infinity()).factor, 0.0);
     EXPECT_EQ(decay(std::numeric_limits<double>::infinity()).mean, 0.0);
+}
+
+// Of the exact value, which a double alone would round.
+double units_off(double value, long double exact) {
+    const auto nearest = static_cast<double>(exact);
+    const double unit = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
+    return std::abs(static_cast<double>(static_cast<long double>(value) - exact)) / unit;
+}
+
+TEST(SpanOfDecay, agrees_with_the_c_library_s_logarithm_to_two_units_in_the_last_place) {
+    constexpr std::uint64_t kSeed = 4;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    for (int i = 0; i < 200000; ++i) {
+        const double lost = i % 3 == 0   ? dice.of_any_size(1e-300, 1.0)
+                            : i % 3 == 1 ? dice.between(0.0, 1.0)
+                                         : 1.0 - dice.of_any_size(0x1p-53, 0.5);
+        if (lost >= 1.0) continue;
+        const long double exact = -std::log1p(-static_cast<long double>(lost));
+        ASSERT_LE(units_off(span_of_decay(lost), exact), 2.0) << lost;
+    }
+}
+
+TEST(SpanOfDecay, is_right_at_its_ends) {
+    EXPECT_EQ(span_of_decay(0.0), 0.0);
+    EXPECT_EQ(span_of_decay(5e-324), 5e-324);
+    EXPECT_EQ(span_of_decay(1e-17), 1e-17);
+    EXPECT_EQ(span_of_decay(0.5), 0x1.62e42fefa39efp-1);            // ln(2)
+    EXPECT_EQ(span_of_decay(1.0 - 0x1p-53), 0x1.25e4f7b2737fap+5);  // 53 ln(2)
+    EXPECT_EQ(span_of_decay(1.0), std::numeric_limits<double>::infinity());
+}
+
+TEST(SpanOfDecay, undoes_a_decay) {
+    for (double x = 1e-9; x < 1.0; x *= 1.7) {
+        EXPECT_NEAR(span_of_decay(x * decay(x).mean) / x, 1.0, 1e-15) << x;
+    }
 }
 
 Scene one_ball() {
