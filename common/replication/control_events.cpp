@@ -13,8 +13,11 @@
 namespace fts::replication {
 namespace {
 
-std::uint32_t digest_of_bits(std::span<const std::uint8_t> bits) {
+// Of what the outcome does not tell: ticks in which nothing moves lead to the same one.
+std::uint32_t digest_of_telling(Tick tick, Tick baseline_tick, std::span<const std::uint8_t> bits) {
     StateDigest digest;
+    digest.add(tick);
+    digest.add(baseline_tick);
     digest.add(bits);
     return digest.value();
 }
@@ -124,7 +127,8 @@ std::vector<std::uint8_t> encode_events(std::span<const BallState> baseline, Tic
     out.varint(tick);
     out.u8(static_cast<std::uint8_t>(tick - baseline_tick));
     const std::vector<std::uint8_t> bits = encoder.finish();
-    out.little_endian(digest_of(outcome) ^ digest_of_bits(bits), StateDigest::kBytes);
+    const std::uint32_t telling = digest_of_telling(tick, baseline_tick, bits);
+    out.little_endian(digest_of(outcome) ^ telling, StateDigest::kBytes);
     out.append(bits);
     return out.take();
 }
@@ -139,7 +143,7 @@ std::optional<ControlPart> decode_events(std::span<const BallState> baseline, Ti
     if (in.failed() || age == 0 || age >= part.tick) return std::nullopt;
     part.baseline_tick = part.tick - age;
     if (part.baseline_tick != baseline_tick) return std::nullopt;
-    part.outcome_digest ^= digest_of_bits(in.rest());
+    part.outcome_digest ^= digest_of_telling(part.tick, part.baseline_tick, in.rest());
     RangeDecoder decoder(in.rest());
     EventCoder<RangeDecoder> coder(decoder, part.baseline_tick, part.tick);
     for (const BallState& ball : baseline) {

@@ -1,6 +1,7 @@
 #include "common/replication/lattice_world.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace fts::replication {
@@ -40,6 +41,7 @@ LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> ball
 }
 
 physics::Scene LatticeWorld::scene_of(std::span<const BallState> balls) const {
+    assert(!course_.scene.platform && !course_.scene.periodic);
     physics::Scene scene = course_.scene;
     scene.bodies.clear();
     scene.bodies.reserve(balls.size());

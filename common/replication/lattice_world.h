@@ -21,9 +21,11 @@ struct Lattice {
     double velocity_step_mps = kVelocityStepMps;
 };
 
-// What both ends know besides snapshots.
+// What both ends know besides snapshots; ours, never made from bytes.
 struct Course {
-    physics::Scene scene;  // its own bodies are not looked at
+    // Walls or nothing: a ball that falls off a platform, or is elsewhere in a periodic box, has no
+    // place among the balls of a snapshot. Its own bodies are not looked at.
+    physics::Scene scene;
     Lattice lattice;
     double tick_s = 1.0 / 60.0;
     // What the control of a ball does to it.
@@ -32,7 +34,8 @@ struct Course {
 
 class LatticeWorld {
   public:
-    // Whatever the balls hold, they are put inside the walls and made valid bodies.
+    // Whatever the balls hold, they are put inside the walls, if there are any, and made valid
+    // bodies: none is ever lost.
     LatticeWorld(const Course& course, std::span<const BallState> balls);
 
     // The control in `controls` acts on ball `index` from now on.

@@ -30,8 +30,6 @@ struct NumberModel {
     std::array<AdaptiveBit, kWidths> upper_half;  // of the numbers of one width
 
     static NumberModel of_spread(Doubt doubt);
-    // Of numbers that are as likely to be long as short.
-    static NumberModel of_any() { return {}; }
     double chance_of_zero() const { return 1.0 - other_than_zero.chance() / 65536.0; }
 };
 

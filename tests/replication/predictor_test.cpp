@@ -159,6 +159,31 @@ TEST(Predictor, MakesValidBodiesOfWhateverABaselineHolds) {
     }
 }
 
+TEST(Predictor, KeepsEveryBallOfAnOpenCourseWhateverABaselineHolds) {
+    Course open = box_course();
+    open.scene.walls.reset();
+    Rng rng(10);
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<BallState> baseline = testing::wild_snapshot(rng, 40, 25).balls;
+        const std::vector<BallState> states =
+            states_of(predict(open, {}, Foresight::kControlsOnLattice, baseline, 40, 46));
+        ASSERT_EQ(states.size(), baseline.size());
+        for (std::size_t i = 0; i < states.size(); ++i) EXPECT_EQ(states[i].id, baseline[i].id);
+    }
+}
+
+#ifndef NDEBUG
+TEST(LatticeWorldDeathTest, TakesNoCourseOnWhichBallsFallOrComeBackFromTheOtherSide) {
+    Course platform;
+    platform.scene.platform = physics::Disc{10.0};
+    EXPECT_DEATH(LatticeWorld(platform, {}), "platform");
+    Course periodic;
+    periodic.scene.periodic = physics::Periodic{{0.0, 0.0}, {10.0, 10.0}};
+    EXPECT_DEATH(LatticeWorld(periodic, {}), "periodic");
+}
+#endif
+
 // The same on every compiler, processor and optimisation level, or the two ends would part.
 TEST(Predictor, GivesTheSameBitsEverywhere) {
     const std::vector<BallState> baseline = balls_in_box(250, 8);
@@ -234,6 +259,27 @@ TEST(ControlEvents, ThatWereAlteredAreNothingOrLeadElsewhere) {
         altered[size] = static_cast<std::uint8_t>(altered[size] ^ (1U << size % 8));
         EXPECT_FALSE(is_shown(altered)) << size;
     }
+}
+
+// Where nothing moves, any tick looks like the one that was sent.
+TEST(ControlEvents, OfAWorldAtRestAreNotTakenForAnotherTicks) {
+    const Course course = box_course();
+    std::vector<BallState> baseline = balls_in_box(20, 6);
+    for (BallState& ball : baseline) {
+        ball.vx = ball.vy = 0;
+        ball.thrust_x = ball.thrust_y = 0;
+    }
+    baseline = LatticeWorld(course, baseline).balls();  // none reaches into a wall
+    const auto outcome = replay(course, baseline, 60, 66, kSnapshotTicks, {});
+    ASSERT_EQ(outcome, baseline);
+    auto bytes = encode_events(baseline, 60, 66, {}, outcome);
+    EXPECT_EQ(decode_events(baseline, 60, bytes)->outcome_digest, digest_of(outcome));
+    ++bytes[0];  // tick
+    ++bytes[1];  // age
+    const auto part = decode_events(baseline, 60, bytes);
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->tick, 67U);
+    EXPECT_NE(part->outcome_digest, digest_of(outcome));
 }
 
 }  // namespace

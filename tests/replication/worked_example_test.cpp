@@ -117,7 +117,7 @@ TEST(WorkedExample, OfAResidualPart) {
 }
 
 TEST(WorkedExample, OfAControlPart) {
-    const Bytes bytes{0x64, 0x03, 0x22, 0x65, 0xe7, 0x34, 0x21};
+    const Bytes bytes{0x64, 0x03, 0x42, 0xd7, 0xed, 0xb7, 0x21};
     std::vector<BallState> baseline = three_balls_at_100();
     baseline[1].kind = static_cast<std::uint8_t>(BallKind::kPlayer);
     const std::vector<ControlEvent> events{{98, 2, 127, 0, false}};
