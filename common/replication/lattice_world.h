@@ -48,6 +48,7 @@ class LatticeWorld {
     std::vector<BallState> balls() const;
     // Of the last `advance`; the index of a body is that of its ball.
     std::span<const physics::Contact<double>> contacts() const { return world_.contacts(); }
+    double kinetic_energy_j() const { return world_.kinetic_energy_j(); }
 
   private:
     physics::Scene scene_of(std::span<const BallState> balls) const;

@@ -15,8 +15,6 @@ namespace {
 
 using replication::BallState;
 
-constexpr std::uint64_t kSeed = 1;
-
 struct Direction {
     std::int8_t x, y;
 };
@@ -40,8 +38,8 @@ double radius_m_of(std::size_t count) {
            replication::kRadiusStepM;
 }
 
-void choose_steered(std::vector<BallState>& balls) {
-    physics::SplitMix random(kSeed);
+void choose_steered(std::vector<BallState>& balls, std::uint64_t seed) {
+    physics::SplitMix random(seed);
     auto left =
         static_cast<std::size_t>(std::round(kTraceSteeredPart * static_cast<double>(balls.size())));
     for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -62,10 +60,11 @@ replication::Course trace_course() {
     return course;
 }
 
-std::optional<ArenaTrace> ArenaTrace::make(std::size_t count, replication::Tick snapshot_ticks,
-                                           bool snaps, std::string& error) {
+std::optional<ArenaTrace> ArenaTrace::make(std::size_t count, std::uint64_t seed,
+                                           replication::Tick snapshot_ticks, bool snaps,
+                                           std::string& error) {
     physics::Generator generator;
-    generator.seed = kSeed;
+    generator.seed = seed;
     generator.count = static_cast<std::int64_t>(count);
     generator.radius_min_m = generator.radius_max_m = radius_m_of(count);
     generator.speed_rms_mps = kTraceRmsSpeedMps;
@@ -86,17 +85,18 @@ std::optional<ArenaTrace> ArenaTrace::make(std::size_t count, replication::Tick 
         ball.mass = static_cast<std::uint32_t>(1.0 / replication::kMassStepKg);
         balls.push_back(ball);
     }
-    choose_steered(balls);
-    return ArenaTrace(std::move(balls), snapshot_ticks, snaps);
+    choose_steered(balls, seed);
+    return ArenaTrace(std::move(balls), seed, snapshot_ticks, snaps);
 }
 
-ArenaTrace::ArenaTrace(std::vector<BallState> balls, replication::Tick snapshot_ticks, bool snaps)
+ArenaTrace::ArenaTrace(std::vector<BallState> balls, std::uint64_t seed,
+                       replication::Tick snapshot_ticks, bool snaps)
     : course_(trace_course()),
       snapshot_ticks_(snapshot_ticks),
       snaps_(snaps),
       balls_(std::move(balls)),
       world_(course_, balls_),
-      random_(kSeed) {}
+      random_(seed) {}
 
 void ArenaTrace::steer(TraceSnapshot& snapshot) {
     const double chance = 1.0 - physics::decay(kTraceChangesPerS / kTraceTickRateHz).factor;
@@ -113,13 +113,19 @@ void ArenaTrace::steer(TraceSnapshot& snapshot) {
     }
 }
 
+void ArenaTrace::snap() {
+    const double before_j = world_.kinetic_energy_j();
+    world_.snap();
+    if (before_j > 0.0) energy_added_ += (world_.kinetic_energy_j() - before_j) / before_j;
+}
+
 TraceSnapshot ArenaTrace::next() {
     TraceSnapshot snapshot;
     for (replication::Tick i = 0; i < snapshot_ticks_; ++i, ++tick_) {
         steer(snapshot);
         world_.advance(course_.tick_s);
     }
-    if (snaps_) world_.snap();
+    if (snaps_) snap();
     snapshot.tick = tick_;
     snapshot.balls = world_.balls();
     balls_ = snapshot.balls;

@@ -38,19 +38,23 @@ replication::Course trace_course();
 
 class ArenaTrace {
   public:
-    // With `snaps`, the server's state is put on the lattice at every snapshot. Nothing, with
-    // `error` set, when so many balls do not fit.
-    static std::optional<ArenaTrace> make(std::size_t count, replication::Tick snapshot_ticks,
-                                          bool snaps, std::string& error);
+    // With `snaps`, the server's state is put on the lattice at every snapshot, and the trace soon
+    // is another than without. Nothing, with `error` set, when so many balls do not fit.
+    static std::optional<ArenaTrace> make(std::size_t count, std::uint64_t seed,
+                                          replication::Tick snapshot_ticks, bool snaps,
+                                          std::string& error);
 
     // On to the next snapshot.
     TraceSnapshot next();
     double rms_speed_mps() const;
+    // What snapping has added to the kinetic energy so far, each time as a part of what there was.
+    double energy_added_by_snapping() const { return energy_added_; }
 
   private:
-    ArenaTrace(std::vector<replication::BallState> balls, replication::Tick snapshot_ticks,
-               bool snaps);
+    ArenaTrace(std::vector<replication::BallState> balls, std::uint64_t seed,
+               replication::Tick snapshot_ticks, bool snaps);
     void steer(TraceSnapshot& snapshot);
+    void snap();
 
     replication::Course course_;
     replication::Tick snapshot_ticks_;
@@ -59,6 +63,7 @@ class ArenaTrace {
     replication::LatticeWorld world_;
     physics::SplitMix random_;
     replication::Tick tick_ = 0;
+    double energy_added_ = 0.0;
 };
 
 }  // namespace fts::lab

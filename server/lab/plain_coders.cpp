@@ -199,8 +199,6 @@ class BitPackingCoder : public PlainCoder {
     }
 };
 
-// The game's format takes a velocity step for four position steps a second, where the trace has
-// ten; velocities are told in the former, so that it predicts what it would in a game.
 class DeltaCoder : public PlainCoder {
   public:
     std::string name() const override { return "the game's delta format"; }
@@ -230,15 +228,11 @@ class DeltaCoder : public PlainCoder {
         game.tick = snapshot.tick;
         game.balls = motion_only(snapshot.balls);
         for (BallState& ball : game.balls) {
-            ball.vx = static_cast<std::int32_t>(std::lround(ball.vx * kStepsPerGameStep));
-            ball.vy = static_cast<std::int32_t>(std::lround(ball.vy * kStepsPerGameStep));
+            ball.vx = static_cast<std::int32_t>(std::lround(ball.vx * kGameStepsPerTraceStep));
+            ball.vy = static_cast<std::int32_t>(std::lround(ball.vy * kGameStepsPerTraceStep));
         }
         return game;
     }
-
-    static constexpr double kStepsPerGameStep =
-        kTraceLattice.velocity_step_mps / kTraceLattice.position_step_m *
-        replication::kPositionStepM / replication::kVelocityStepMps;
 };
 
 }  // namespace

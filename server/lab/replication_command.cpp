@@ -108,11 +108,13 @@ int execute(const Options& options) {
 
 void add_replication(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
-        "replication", "What a snapshot costs on the wire: every way to code it, on one trace");
+        "replication", "What a snapshot costs on the wire: every way to code it, on one arena");
     const auto options = std::make_shared<Options>();
     ReplicationRequest& request = options->request;
     command->add_option("--count", request.count, "Balls")
         ->check(number_from(1, kMaxCount))
+        ->capture_default_str();
+    command->add_option("--seed", request.seed, "Of the arena, and of what the link loses")
         ->capture_default_str();
     command->add_option("--rate", request.rate_hz, "Snapshots per second, 60 over a whole number")
         ->check(number_from(1, kTraceTickRateHz))
@@ -120,7 +122,7 @@ void add_replication(CLI::App& app, int& exit_code) {
     command
         ->add_option("--delay-ms", request.delay_ms,
                      "From sending a snapshot to hearing that it was held")
-        ->check(number_from(0, 2000))
+        ->check(number_from(0, kMaxDelayMs))
         ->capture_default_str();
     command
         ->add_option("--loss", request.loss,

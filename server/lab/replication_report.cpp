@@ -1,9 +1,15 @@
 // What a study of replication found: for the terminal, for programs, and as a picture.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
 #include "server/lab/arena_trace.h"
 #include "server/lab/replication_study.h"
+#include "server/lab/snapshot_coders.h"
 #include "server/lab/svg_plot.h"
 #include "server/lab/text_table.h"
 
@@ -15,24 +21,54 @@ std::string setting_text(const ReplicationRequest& request) {
                        request.count, request.rate_hz, request.delay_ms, 100.0 * request.loss);
 }
 
+std::string notes_of(const ReplicationStudy& study) {
+    std::string out = fmt::format(
+        "  Two traces of one start and steering: free, and snapped, whose server puts its state\n"
+        "  on the lattice at every snapshot (for the two coders that need it). Snapping changes\n"
+        "  that trace's kinetic energy by {:+.1e} of it a second.\n"
+        "  The game's delta format says velocities in its own steps, {:g} of which are one of the\n"
+        "  trace's, so as to predict as in a game: it tells more than the others.\n"
+        "  Steps: height/4096, and ten of these a second; rms speed {:.3f} heights/s.\n",
+        study.snapping_energy_per_s, kGameStepsPerTraceStep, study.rms_speed_mps / kTraceHeightM);
+    std::uint64_t decoded = 0, wrong = 0;
+    for (const CoderRow& row : study.rows) {
+        decoded += row.decoded;
+        wrong += row.wrong;
+    }
+    out += fmt::format("  {} snapshots decoded and compared with the truth, {} of them wrong.\n",
+                       decoded, wrong);
+    return out;
+}
+
 }  // namespace
 
 std::string command_of(const ReplicationRequest& request) {
     return fmt::format(
-        "fts-lab replication --count {} --rate {:g} --delay-ms {:g} --loss {:g} --seconds {:g}",
-        request.count, request.rate_hz, request.delay_ms, request.loss, request.seconds);
+        "fts-lab replication --count {} --seed {} --rate {:g} --delay-ms {:g} --loss {:g} "
+        "--seconds {:g}",
+        request.count, request.seed, request.rate_hz, request.delay_ms, request.loss,
+        request.seconds);
 }
 
 std::string table_of(const ReplicationRequest& request, const ReplicationStudy& study) {
-    TextTable table({"coder", "bits/ball", "bytes", "datagrams", "usable", "encode us", "decode us",
-                     "damaged", "shown"});
+    const bool some_of_nothing = std::any_of(study.rows.begin(), study.rows.end(),
+                                             [](const CoderRow& row) { return row.keyframes > 0; });
+    std::vector<std::string> heads{"coder",     "bits/ball", "bytes",   "datagrams", "usable",
+                                   "encode us", "decode us", "damaged", "shown"};
+    if (some_of_nothing) heads.emplace_back("of nothing");
+    TextTable table(std::move(heads));
     for (const CoderRow& row : study.rows) {
-        table.add({row.coder, fmt::format("{:.2f}", row.bits_per_ball),
-                   fmt::format("{:.0f}", row.bytes_per_snapshot),
-                   fmt::format("{:.2f}", row.datagrams),
-                   fmt::format("{:.1f} %", 100.0 * row.usable),
-                   fmt::format("{:.1f}", row.encode_us), fmt::format("{:.0f}", row.decode_us),
-                   std::to_string(row.damaged), std::to_string(row.damaged_shown)});
+        std::vector<std::string> cells{row.coder,
+                                       fmt::format("{:.2f}", row.bits_per_ball),
+                                       fmt::format("{:.0f}", row.bytes_per_snapshot),
+                                       fmt::format("{:.2f}", row.datagrams),
+                                       fmt::format("{:.1f} %", 100.0 * row.usable),
+                                       fmt::format("{:.1f}", row.encode_us),
+                                       fmt::format("{:.0f}", row.decode_us),
+                                       std::to_string(row.damaged),
+                                       std::to_string(row.damaged_shown)};
+        if (some_of_nothing) cells.push_back(std::to_string(row.keyframes));
+        table.add(std::move(cells));
     }
     std::string out = setting_text(request) + "\n\n" + table.text() + "\n";
     out += fmt::format(
@@ -42,16 +78,10 @@ std::string table_of(const ReplicationRequest& request, const ReplicationStudy& 
         "  decode us  a snapshot; both with the prediction, where there is one\n"
         "  damaged    snapshots with a byte altered or missing, and how many of them were shown\n",
         kStudyClients);
-    out += fmt::format(
-        "  Steps: height/4096, and ten of these a second; rms speed {:.3f} heights/s.\n",
-        study.rms_speed_mps / kTraceHeightM);
-    std::uint64_t decoded = 0, wrong = 0;
-    for (const CoderRow& row : study.rows) {
-        decoded += row.decoded;
-        wrong += row.wrong;
+    if (some_of_nothing) {
+        out += "  of nothing snapshots to a client of which no acknowledgement had come in time\n";
     }
-    out += fmt::format("  {} snapshots decoded and compared with the truth, {} of them wrong.\n",
-                       decoded, wrong);
+    out += notes_of(study);
     out += "Again: " + command_of(request) + "\n";
     if (study.stopped()) out += fmt::format("stopped after {} of {}\n", study.done, study.of);
     return out;
@@ -59,6 +89,7 @@ std::string table_of(const ReplicationRequest& request, const ReplicationStudy& 
 
 std::string json_of(const ReplicationRequest& request, const ReplicationStudy& study) {
     nlohmann::ordered_json json = {{"count", request.count},
+                                   {"seed", request.seed},
                                    {"rate_hz", request.rate_hz},
                                    {"delay_ms", request.delay_ms},
                                    {"loss", request.loss},
@@ -66,12 +97,14 @@ std::string json_of(const ReplicationRequest& request, const ReplicationStudy& s
                                    {"unmeasured_s", kUnmeasuredS},
                                    {"clients", kStudyClients},
                                    {"rms_speed_heights_per_s", study.rms_speed_mps / kTraceHeightM},
+                                   {"snapping_energy_per_s", study.snapping_energy_per_s},
                                    {"command", command_of(request)},
                                    {"snapshots", study.done},
                                    {"stopped", study.stopped()}};
     json["rows"] = nlohmann::ordered_json::array();
     for (const CoderRow& row : study.rows) {
         json["rows"].push_back({{"coder", row.coder},
+                                {"trace", row.snapped ? "snapped" : "free"},
                                 {"bits_per_ball", row.bits_per_ball},
                                 {"bytes_per_snapshot", row.bytes_per_snapshot},
                                 {"datagrams", row.datagrams},

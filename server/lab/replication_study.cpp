@@ -6,8 +6,12 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "common/physics/splitmix.h"
+#include "common/replication/snapshot_codec.h"
 #include "server/lab/snapshot_coders.h"
 
 namespace fts::lab {
@@ -15,13 +19,49 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kLinkSeed = 7;
-// Snapshots that a server keeps to encode against, and the greatest age of one in ticks.
-constexpr std::size_t kKeptSnapshots = 64;
-constexpr replication::Tick kGreatestAge = 255;
-// Sent before any are measured, so that every client has acknowledged something.
-constexpr std::size_t kFirstExchange = 40;
+// Tells the luck of the link from that of the traces.
+constexpr std::uint64_t kLinkStream = 6;
+constexpr replication::Tick kGreatestAge = replication::kMaxPredictedTicks;
+// So many snapshots in a row may be lost before a client is sent one of nothing.
+constexpr std::size_t kSparedSnapshots = 61;
+// Beyond the delay: sent before any are measured, so that every client has acknowledged something.
+constexpr std::size_t kFirstExchange = 38;
 constexpr std::uint64_t kDamagedEvery = 8;
+
+// From a snapshot to the first that can be sent against it, in snapshots.
+std::size_t delay_in_snapshots(double delay_ms, replication::Tick snapshot_ticks) {
+    const double ticks = delay_ms / 1000.0 * kTraceTickRateHz;
+    return static_cast<std::size_t>(std::max(1.0, std::ceil(ticks / snapshot_ticks - 1e-9)));
+}
+
+// How snapshots follow on each other, and how long a server needs them.
+struct Pace {
+    explicit Pace(const ReplicationRequest& request)
+        : snapshot_ticks(
+              static_cast<replication::Tick>(std::lround(kTraceTickRateHz / request.rate_hz))),
+          delay(delay_in_snapshots(request.delay_ms, snapshot_ticks)) {}
+
+    double rate_hz() const { return static_cast<double>(kTraceTickRateHz) / snapshot_ticks; }
+    // With the newest.
+    std::size_t kept() const { return std::min(delay + kSparedSnapshots, greatest_age()) + 1; }
+    std::size_t unmeasured() const {
+        return static_cast<std::size_t>(std::ceil(kUnmeasuredS * rate_hz()));
+    }
+    // Why no snapshot could be acknowledged in time to be a baseline; empty: they can.
+    std::string refusal(const ReplicationRequest& request) const {
+        if (delay <= greatest_age()) return {};
+        const double most_ms = 1000.0 * static_cast<double>(greatest_age()) / rate_hz();
+        return fmt::format(
+            "--delay-ms {:g} is too long for --rate {:g}: no baseline may be older than {} ticks; "
+            "give a --delay-ms of at most {:g}, or a greater --rate",
+            request.delay_ms, request.rate_hz, kGreatestAge, std::floor(most_ms));
+    }
+
+    std::size_t greatest_age() const { return kGreatestAge / snapshot_ticks; }
+
+    replication::Tick snapshot_ticks;
+    std::size_t delay;  // in snapshots
+};
 
 double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -58,8 +98,12 @@ std::size_t datagrams_of(std::size_t bytes) {
 class Exchange {
   public:
     Exchange(std::unique_ptr<SnapshotCoder> coder, const ReplicationRequest& request)
-        : coder_(std::move(coder)), request_(request), random_(kLinkSeed), clients_(kStudyClients) {
+        : coder_(std::move(coder)),
+          request_(request),
+          random_(request.seed ^ kLinkStream),
+          clients_(kStudyClients) {
         row_.coder = coder_->name();
+        row_.snapped = coder_->wants_lattice();
     }
 
     bool wants_lattice() const { return coder_->wants_lattice(); }
@@ -178,28 +222,32 @@ ReplicationStudy study_replication(
     const ReplicationRequest& request, const std::function<bool()>& go_on,
     const std::function<void(std::size_t done, std::size_t of)>& progress) {
     ReplicationStudy study;
-    const auto snapshot_ticks =
-        static_cast<replication::Tick>(std::lround(kTraceTickRateHz / request.rate_hz));
-    auto free = ArenaTrace::make(request.count, snapshot_ticks, false, study.error);
-    auto snapped = ArenaTrace::make(request.count, snapshot_ticks, true, study.error);
+    const Pace pace(request);
+    study.error = pace.refusal(request);
+    if (!study.error.empty()) return study;
+    const auto trace = [&](bool snaps) {
+        return ArenaTrace::make(request.count, request.seed, pace.snapshot_ticks, snaps,
+                                study.error);
+    };
+    auto free = trace(false), snapped = trace(true);
     if (!free || !snapped) return study;
     std::vector<Exchange> exchanges;
-    for (auto& coder : all_coders(snapshot_ticks))
+    for (auto& coder : all_coders(pace.snapshot_ticks)) {
         exchanges.emplace_back(std::move(coder), request);
-    const double rate_hz = static_cast<double>(kTraceTickRateHz) / snapshot_ticks;
-    study.of = static_cast<std::size_t>(std::floor(request.seconds * rate_hz));
-    const auto unmeasured = static_cast<std::size_t>(std::ceil(kUnmeasuredS * rate_hz));
+    }
+    study.of = static_cast<std::size_t>(std::floor(request.seconds * pace.rate_hz()));
+    const std::size_t unmeasured = pace.unmeasured();
     std::vector<TraceSnapshot> free_history, snapped_history;
     double squares = 0.0;
     while (study.done < study.of && go_on()) {
         progress(study.done, study.of);
-        for (auto [trace, history] :
+        for (auto [moving, history] :
              {std::pair{&*free, &free_history}, {&*snapped, &snapped_history}}) {
-            history->push_back(trace->next());
-            if (history->size() > kKeptSnapshots) history->erase(history->begin());
+            history->push_back(moving->next());
+            if (history->size() > pace.kept()) history->erase(history->begin());
         }
         const bool measured = study.done >= unmeasured;
-        if (study.done + kFirstExchange >= unmeasured) {
+        if (study.done + pace.delay + kFirstExchange >= unmeasured) {
             for (Exchange& exchange : exchanges) {
                 exchange.send(exchange.wants_lattice() ? snapped_history : free_history, measured);
             }
@@ -210,6 +258,10 @@ ReplicationStudy study_replication(
     for (const Exchange& exchange : exchanges) study.rows.push_back(exchange.row());
     if (study.done > unmeasured) {
         study.rms_speed_mps = std::sqrt(squares / static_cast<double>(study.done - unmeasured));
+    }
+    if (study.done > 0) {
+        study.snapping_energy_per_s =
+            snapped->energy_added_by_snapping() * pace.rate_hz() / static_cast<double>(study.done);
     }
     return study;
 }

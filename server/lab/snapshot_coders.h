@@ -15,6 +15,11 @@ namespace fts::lab {
 
 using Datagram = std::vector<std::uint8_t>;
 inline constexpr std::size_t kMaxDatagramBytes = 1200;
+// The game's format takes a velocity step for four position steps a second, where the traces have
+// ten; velocities are told to it in the former, so that it predicts what it would in a game.
+inline constexpr double kGameStepsPerTraceStep =
+    kTraceLattice.velocity_step_mps / kTraceLattice.position_step_m * replication::kPositionStepM /
+    replication::kVelocityStepMps;
 
 class SnapshotCoder {
   public:

@@ -1,4 +1,5 @@
 // fts-lab replication: what it writes, how it ends, and what our ways of coding promise.
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace fts::lab {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::map<std::string, CoderRow> rows_of(const ReplicationRequest& request) {
     const ReplicationStudy study = study_replication(
@@ -45,7 +47,7 @@ TEST(ReplicationStudy, decodes_every_snapshot_to_what_was_sent_and_shows_none_of
     }
 }
 
-TEST(ReplicationStudy, needs_no_more_bits_for_a_thousand_balls_than_was_asked_for) {
+TEST(ReplicationStudy, takes_under_12_6_and_1_5_bits_a_ball_of_901_the_more_both_ends_know) {
     ReplicationRequest request;
     request.seconds = 11.0;
     const auto rows = rows_of(request);
@@ -55,6 +57,60 @@ TEST(ReplicationStudy, needs_no_more_bits_for_a_thousand_balls_than_was_asked_fo
     EXPECT_LT(rows.at("ours, control events only").bits_per_ball, 1.5);
     EXPECT_LT(rows.at("ours, straight lines").bits_per_ball,
               rows.at("the game's delta format").bits_per_ball);
+}
+
+TEST(ReplicationStudy, with_another_seed_is_another_arena_that_costs_about_the_same) {
+    ReplicationRequest request;
+    request.count = 150;
+    request.seconds = 12.0;
+    const auto rows = rows_of(request);
+    request.seed = 2;
+    const auto others = rows_of(request);
+    for (const auto& [name, row] : rows) {
+        SCOPED_TRACE(name);
+        if (!name.starts_with("ours")) continue;
+        EXPECT_EQ(others.at(name).wrong, 0U);
+        EXPECT_NE(others.at(name).bits_per_ball, row.bits_per_ball);
+        EXPECT_NEAR(others.at(name).bits_per_ball / row.bits_per_ball, 1.0, 0.3);
+    }
+}
+
+// A client that hears late must still find its baseline kept, and every snapshot sent against one.
+TEST(ReplicationStudy, keeps_what_a_late_acknowledgement_asks_for) {
+    ReplicationRequest request;
+    request.count = 10;
+    request.seconds = 11.2;
+    request.rate_hz = 60.0;
+    request.delay_ms = 1100.0;
+    for (const auto& [name, row] : rows_of(request)) {
+        SCOPED_TRACE(name);
+        EXPECT_GT(row.decoded, 70U);
+        EXPECT_EQ(row.wrong, 0U);
+        EXPECT_EQ(row.keyframes, 0U);
+    }
+}
+
+TEST(ReplicationStudy, says_what_putting_the_state_on_the_lattice_costs) {
+    ReplicationRequest request;
+    request.count = 150;
+    request.seconds = 12.0;
+    const ReplicationStudy study = study_replication(
+        request, [] { return true; }, [](std::size_t, std::size_t) {});
+    EXPECT_NE(study.snapping_energy_per_s, 0.0);
+    EXPECT_LT(std::abs(study.snapping_energy_per_s), 0.01);
+    EXPECT_THAT(table_of(request, study), HasSubstr("kinetic energy by"));
+    EXPECT_THAT(table_of(request, study), Not(HasSubstr("of nothing")));
+}
+
+TEST(ReplicationStudy, shows_what_had_to_be_sent_of_nothing) {
+    ReplicationRequest request;
+    request.count = 10;
+    request.seconds = 11.0;
+    request.loss = 0.9;
+    const ReplicationStudy study = study_replication(
+        request, [] { return true; }, [](std::size_t, std::size_t) {});
+    EXPECT_GT(study.rows.front().keyframes, 0U);
+    EXPECT_THAT(table_of(request, study), HasSubstr("of nothing"));
 }
 
 Ended replication(std::vector<std::string> arguments) {
@@ -80,6 +136,10 @@ TEST(ReplicationCommand, says_everything_to_programs_and_draws_it) {
         }
         EXPECT_EQ(row["wrong"], 0);
     }
+    EXPECT_EQ(json["seed"], 1);
+    EXPECT_TRUE(json["snapping_energy_per_s"].is_number());
+    EXPECT_EQ(json["rows"][0]["trace"], "free");
+    EXPECT_EQ(json["rows"][7]["trace"], "snapped");
     EXPECT_THAT(content_of(svg_file), HasSubstr("ours, collisions"));
 }
 
@@ -90,6 +150,9 @@ TEST(ReplicationCommand, refuses_what_makes_no_sense_in_words) {
     const Ended loss = replication({"--loss", "1.5"});
     EXPECT_EQ(loss.code, 2);
     EXPECT_THAT(loss.output, HasSubstr("--loss"));
+    const Ended delay = replication({"--rate", "1", "--delay-ms", "4100"});
+    EXPECT_EQ(delay.code, 2);
+    EXPECT_THAT(delay.output, HasSubstr("give a --delay-ms of at most 4000"));
     EXPECT_EQ(replication({"--json", "-", "--svg", "-"}).code, 1);
 }
 
