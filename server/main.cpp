@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "common/net/connection.h"
@@ -88,11 +89,22 @@ std::optional<Resources> acquire(const Options& options, std::string& error) {
     return resources;
 }
 
+// What arrives within this time of a first datagram is received together with it: waking up for
+// each costs more than it brings.
+constexpr double kGatherS = 1e-3;
+
+void wait_for_work(const Server& server, net::UdpTransport& transport) {
+    transport.wait_readable(std::max(0.0, server.next_tick_s() - monotonic_now_s()));
+    const double left_s = server.next_tick_s() - monotonic_now_s();
+    if (left_s <= 0.0) return;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, kGatherS)));
+}
+
 void serve(Server& server, net::UdpTransport& transport, DurationHistogram& tick_durations) {
     while (!stop_requested) {
         const double began_s = monotonic_now_s();
         if (server.tick(began_s) > 0) tick_durations.record(monotonic_now_s() - began_s);
-        transport.wait_readable(std::max(0.0, server.next_tick_s() - monotonic_now_s()));
+        wait_for_work(server, transport);
     }
 }
 

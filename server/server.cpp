@@ -57,12 +57,16 @@ Server::~Server() = default;
 int Server::tick(double now_s) {
     receive(now_s);
     const int due = clock_.due(now_s);
-    if (due == 0) return 0;
+    if (due == 0) {
+        transport_.flush();
+        return 0;
+    }
 
     for (int i = 0; i < due && !paused_; ++i) play_one_tick();
     settle_ledger(now_s);
     end_overdue_sessions(now_s);
     listener_.update(now_s);
+    transport_.flush();
     say_what_is_wrong(now_s);
     return due;
 }
@@ -216,6 +220,7 @@ void Server::shut_down(double now_s, std::string_view goodbye) {
     listener_.update(now_s);  // the answers leave before the goodbye
     listener_.close(goodbye);
     listener_.update(now_s);
+    transport_.flush();
     sessions_.clear();
 }
 
@@ -235,6 +240,7 @@ ServerReport Server::report() const {
     report.unwritten_transactions = unwritten_;
     for (const auto& [what, times] : drops_) report.drops[std::string(what)] += times;
     for (const auto& [what, times] : listener_.drops()) report.drops[std::string(what)] += times;
+    for (const auto& [what, times] : transport_.drops()) report.drops[std::string(what)] += times;
     return report;
 }
 

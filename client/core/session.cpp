@@ -234,6 +234,7 @@ void Session::update(double now_s) {
     impl_->dialer.update(now_s);
     for (const net::Event& event : impl_->dialer.drain_events()) impl_->handle(event, now_s);
     impl_->send_due_inputs(now_s);
+    impl_->transport.flush();
 }
 
 void Session::set_input(const game::InputCommand& input) {

@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -80,10 +79,6 @@ struct LinkStats {
     std::uint64_t packets_sent = 0, packets_received = 0;
     std::uint64_t bytes_sent = 0, bytes_received = 0;
 };
-
-// Why packets were dropped, by reason; a fixed set of names ("malformed", "bad_cookie", "replayed",
-// ...).
-using DropCounters = std::map<std::string_view, std::uint64_t>;
 
 struct ListenerConfig {
     KeyPair key{};

@@ -1,5 +1,5 @@
-// The reasons for which a packet is dropped. Every one is there from the start, at 0, so that what
-// reads the counters sees a fixed set.
+// The reasons for which a packet is dropped, by a session and by a socket. Every one is there from
+// the start, at 0, so that what reads the counters sees a fixed set.
 #pragma once
 
 #include <string_view>
@@ -28,6 +28,20 @@ inline DropCounters make_counters() {
             {kBadHandshake, 0},   {kServerFull, 0}, {kHalfOpenLimit, 0}, {kUnknownSession, 0},
             {kReplayed, 0},       {kBadSeal, 0},    {kProtocolError, 0}, {kEventsFull, 0},
             {kUnprovenAddress, 0}};
+}
+
+// Of a socket.
+inline constexpr std::string_view kSendTooLarge = "send_too_large";
+inline constexpr std::string_view kSendUnroutable = "send_unroutable";  // IPv6 through IPv4
+inline constexpr std::string_view kSendBufferFull = "send_buffer_full";
+inline constexpr std::string_view kSendFailed = "send_failed";
+inline constexpr std::string_view kPeerUnreachable = "peer_unreachable";  // as its machine said
+inline constexpr std::string_view kReceiveFailed = "receive_failed";
+inline constexpr std::string_view kReceiveBufferFull = "receive_buffer_full";
+
+inline DropCounters make_transport_counters() {
+    return {{kSendTooLarge, 0},    {kSendUnroutable, 0}, {kSendBufferFull, 0},   {kSendFailed, 0},
+            {kPeerUnreachable, 0}, {kReceiveFailed, 0},  {kReceiveBufferFull, 0}};
 }
 
 }  // namespace fts::net::drop

@@ -65,6 +65,14 @@ bool SimulatedLink::send(const Address& to, std::span<const std::uint8_t> datagr
     return true;
 }
 
+void SimulatedLink::flush() {
+    impl_->inner->flush();
+}
+
+DropCounters SimulatedLink::drops() const {
+    return impl_->inner->drops();
+}
+
 std::size_t SimulatedLink::poll(double now_s, const Receiver& receiver) {
     Impl& impl = *impl_;
     impl.now_s = std::max(impl.now_s, now_s);

@@ -23,7 +23,9 @@ class SimulatedLink final : public Transport {
     ~SimulatedLink() override;
     // Held back until its time comes; `poll` is what moves datagrams on.
     bool send(const Address& to, std::span<const std::uint8_t> datagram) override;
+    void flush() override;
     std::size_t poll(double now_s, const Receiver& receiver) override;
+    DropCounters drops() const override;
 
   private:
     struct Impl;

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,17 +36,27 @@ struct Resolved {
 };
 Resolved resolve(std::string_view host_and_port, std::uint16_t default_port);
 
+// Why packets were dropped, by reason; a fixed set of names ("malformed", "bad_cookie", "replayed",
+// ...).
+using DropCounters = std::map<std::string_view, std::uint64_t>;
+
 class Transport {
   public:
     virtual ~Transport() = default;
 
-    // Queues or sends one datagram of at most kMaxDatagramBytes. False when it was dropped here.
+    // Sends one datagram of at most kMaxDatagramBytes, or keeps it until `flush` at the latest;
+    // to one address in the order of the calls. False when it was dropped here.
     virtual bool send(const Address& to, std::span<const std::uint8_t> datagram) = 0;
+    // Sends what was kept. Call after the last `send` of a tick.
+    virtual void flush() {}
 
     using Receiver =
         std::function<void(const Address& from, std::span<const std::uint8_t> datagram)>;
     // Hands over every datagram that has arrived by `now_s`; never blocks. Returns how many.
     virtual std::size_t poll(double now_s, const Receiver& receiver) = 0;
+
+    // What was lost here, on the way out or in.
+    virtual DropCounters drops() const { return {}; }
 };
 
 }  // namespace fts::net

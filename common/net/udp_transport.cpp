@@ -1,11 +1,15 @@
 #include "common/net/udp_transport.h"
 
 #include <algorithm>
-#include <array>
+#include <cerrno>
 #include <cmath>
 #include <poll.h>
 
 #include <asio.hpp>
+
+#include "common/net/drops.h"
+#include "common/net/outbox.h"
+#include "common/net/udp_calls.h"
 
 namespace fts::net {
 namespace {
@@ -16,9 +20,8 @@ using asio::ip::udp;
 constexpr std::size_t kMaxDatagramsPerPoll = 4096;
 // Enough for a tick's worth of packets of a full server. The system may grant less.
 constexpr int kSocketBufferBytes = 1 << 20;
-// Larger ones are handed over cut, which is as good as any other way to be too large.
-constexpr std::size_t kReceiveBufferBytes = 2048;
-static_assert(kReceiveBufferBytes > kMaxDatagramBytes);
+// Errors in a row after which `poll` comes back, whatever else is waiting.
+constexpr int kMaxErrorsPerPoll = 64;
 
 asio::error_code bind_to(udp::socket& socket, const udp::endpoint& endpoint) {
     asio::error_code error;
@@ -50,23 +53,35 @@ std::string explain(const asio::error_code& error, const std::string& host, std:
            error.message() + "; choose an address of this machine, or none for all of them";
 }
 
-Address address_of(const udp::endpoint& endpoint) {
-    const auto v6 = endpoint.address().is_v4()
-                        ? asio::ip::make_address_v6(asio::ip::v4_mapped, endpoint.address().to_v4())
-                        : endpoint.address().to_v6();
-    return {v6.to_bytes(), endpoint.port()};
+bool is_v4_mapped(const Address& address) {
+    return asio::ip::address_v6(address.ip).is_v4_mapped();
 }
 
 }  // namespace
 
 struct UdpTransport::Impl {
+    void flush();
+
     asio::io_context context;
     udp::socket socket{context};
-    std::array<std::uint8_t, kReceiveBufferBytes> buffer{};
+    UdpCalls calls = UdpCalls::kBatched;
+    bool is_v6 = true;
+    DropCounters drops = drop::make_transport_counters();
+    Outbox outbox{drops};
+    ReceivedDatagrams received;
+    UdpStats stats;
 };
 
+void UdpTransport::Impl::flush() {
+    if (outbox.empty()) return;
+    outbox.send([this](std::span<const Outbox::Datagram> datagrams) {
+        ++stats.send_calls;
+        return send_some(socket.native_handle(), is_v6, calls, datagrams);
+    });
+}
+
 std::unique_ptr<UdpTransport> UdpTransport::open(const std::string& bind_host, std::uint16_t port,
-                                                 std::string& error) {
+                                                 std::string& error, UdpCalls calls) {
     auto impl = std::make_unique<Impl>();
     asio::error_code failure;
     if (bind_host.empty()) {
@@ -87,11 +102,15 @@ std::unique_ptr<UdpTransport> UdpTransport::open(const std::string& bind_host, s
         error = explain(failure, bind_host, port);
         return nullptr;
     }
+    impl->calls = calls;
+    impl->is_v6 = impl->socket.local_endpoint(failure).protocol() == udp::v6();
     return std::unique_ptr<UdpTransport>(new UdpTransport(std::move(impl)));
 }
 
 UdpTransport::UdpTransport(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-UdpTransport::~UdpTransport() = default;
+UdpTransport::~UdpTransport() {
+    impl_->flush();
+}
 
 std::uint16_t UdpTransport::local_port() const {
     asio::error_code error;
@@ -99,31 +118,59 @@ std::uint16_t UdpTransport::local_port() const {
 }
 
 bool UdpTransport::send(const Address& to, std::span<const std::uint8_t> datagram) {
-    if (datagram.size() > kMaxDatagramBytes) return false;
-    asio::error_code error;
-    asio::ip::address address = asio::ip::address_v6(to.ip);
-    if (impl_->socket.local_endpoint(error).protocol() == udp::v4()) {
-        if (!address.to_v6().is_v4_mapped()) return false;
-        address = asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
-    }
-    impl_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), {address, to.port}, 0,
-                          error);
-    return !error;
+    Impl& impl = *impl_;
+    const auto dropped = [&impl](std::string_view reason) {
+        ++impl.drops[reason];
+        return false;
+    };
+    if (datagram.size() > kMaxDatagramBytes) return dropped(drop::kSendTooLarge);
+    if (!impl.is_v6 && !is_v4_mapped(to)) return dropped(drop::kSendUnroutable);
+    if (impl.outbox.full()) impl.flush();
+    if (impl.outbox.full()) return dropped(drop::kSendBufferFull);
+    impl.outbox.add(to, datagram);
+    return true;
+}
+
+void UdpTransport::flush() {
+    impl_->flush();
 }
 
 std::size_t UdpTransport::poll(double /*now_s*/, const Receiver& receiver) {
+    Impl& impl = *impl_;
+    impl.flush();
     std::size_t count = 0;
-    for (std::size_t i = 0; i < kMaxDatagramsPerPoll; ++i) {
-        udp::endpoint from;
-        asio::error_code error;
-        const std::size_t size =
-            impl_->socket.receive_from(asio::buffer(impl_->buffer), from, 0, error);
-        if (error == asio::error::would_block || error == asio::error::try_again) break;
-        if (error) continue;  // an unreachable peer is reported here; silence tells as much
-        ++count;
-        receiver(address_of(from), std::span(impl_->buffer).first(size));
+    int errors = 0;
+    while (count < kMaxDatagramsPerPoll && errors < kMaxErrorsPerPoll) {
+        ++impl.stats.receive_calls;
+        const auto outcome = impl.received.receive(impl.socket.native_handle(), impl.calls);
+        if (outcome.error != 0) {
+            ++errors;
+            if (outcome.error == ECONNREFUSED) {
+                ++impl.drops[drop::kPeerUnreachable];
+            } else if (outcome.error != EINTR) {
+                ++impl.drops[drop::kReceiveFailed];
+            }
+        }
+        for (std::size_t i = 0; i < outcome.count; ++i) {
+            receiver(impl.received.from(i), impl.received.bytes(i));
+        }
+        count += outcome.count;
+        if (outcome.is_drained) break;
     }
+    impl.stats.datagrams_received += count;
     return count;
+}
+
+DropCounters UdpTransport::drops() const {
+    DropCounters drops = impl_->drops;
+    drops[drop::kReceiveBufferFull] += overflow_count(impl_->socket.native_handle());
+    return drops;
+}
+
+UdpStats UdpTransport::stats() const {
+    UdpStats stats = impl_->stats;
+    stats.datagrams_sent = impl_->outbox.sent_count();
+    return stats;
 }
 
 void UdpTransport::wait_readable(double timeout_s) {

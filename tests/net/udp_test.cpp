@@ -9,9 +9,9 @@
 namespace fts::net {
 namespace {
 
-std::unique_ptr<UdpTransport> open_any() {
+std::unique_ptr<UdpTransport> open_any(UdpCalls calls = UdpCalls::kBatched) {
     std::string error;
-    auto transport = UdpTransport::open("", 0, error);
+    auto transport = UdpTransport::open("", 0, error, calls);
     EXPECT_TRUE(transport) << error;
     return transport;
 }
@@ -32,11 +32,13 @@ TEST(Udp, a_client_connects_and_both_ends_exchange_messages_over_loopback) {
     const auto tick = [&] {
         now_s += 0.01;
         dialer.update(now_s);
+        client_socket->flush();
         server_socket->wait_readable(0.02);
         server_socket->poll(now_s, [&](const Address& from, std::span<const std::uint8_t> bytes) {
             listener.receive(from, bytes, now_s);
         });
         listener.update(now_s);
+        server_socket->flush();
         client_socket->wait_readable(0.02);
         client_socket->poll(now_s, [&](const Address& from, std::span<const std::uint8_t> bytes) {
             dialer.receive(from, bytes, now_s);
@@ -61,6 +63,8 @@ TEST(Udp, datagrams_arrive_whole_with_the_address_they_came_from) {
     const std::vector<std::uint8_t> sent(kMaxDatagramBytes, 42);
     ASSERT_TRUE(a->send(loopback(b->local_port()), sent));
     EXPECT_FALSE(a->send(loopback(b->local_port()), std::vector<std::uint8_t>(1201)));
+    EXPECT_EQ(a->drops().at("send_too_large"), 1U);
+    a->flush();
     b->wait_readable(5.0);
     std::vector<std::uint8_t> got;
     Address from;
@@ -72,6 +76,135 @@ TEST(Udp, datagrams_arrive_whole_with_the_address_they_came_from) {
               1U);
     EXPECT_EQ(got, sent);
     EXPECT_EQ(from, loopback(a->local_port()));
+}
+
+// What `socket` receives until `count` datagrams have come or nothing does for a while.
+std::vector<Datagram> receive(UdpTransport& socket, std::size_t count) {
+    std::vector<Datagram> received;
+    while (received.size() < count) {
+        socket.wait_readable(0.3);
+        const std::size_t came =
+            socket.poll(0.0, [&](const Address&, std::span<const std::uint8_t> bytes) {
+                received.emplace_back(bytes.begin(), bytes.end());
+            });
+        if (came == 0) break;
+    }
+    return received;
+}
+
+// Its first two bytes are its number; its size is any up to the limit.
+Datagram marked(std::size_t number) {
+    const std::size_t size = std::max<std::size_t>(2, number * 7919 % (kMaxDatagramBytes + 1));
+    Datagram datagram(size, static_cast<std::uint8_t>(number % 251));
+    datagram[0] = static_cast<std::uint8_t>(number);
+    datagram[1] = static_cast<std::uint8_t>(number >> 8U);
+    return datagram;
+}
+
+// With many datagrams a call, and with one.
+class UdpBatch : public testing::TestWithParam<UdpCalls> {};
+INSTANTIATE_TEST_SUITE_P(Calls, UdpBatch, testing::Values(UdpCalls::kBatched, UdpCalls::kOneByOne),
+                         [](const auto& calls) {
+                             return calls.param == UdpCalls::kBatched ? "batched" : "one_by_one";
+                         });
+
+TEST_P(UdpBatch,
+       thousands_of_datagrams_of_all_sizes_arrive_whole_and_in_order_at_each_of_three_peers) {
+    constexpr std::size_t kRounds = 40, kInRound = 100;
+    const auto sender = open_any(GetParam());
+    std::vector<std::unique_ptr<UdpTransport>> peers;
+    for (int i = 0; i < 3; ++i) peers.push_back(open_any(GetParam()));
+    std::vector<std::size_t> arrived(peers.size(), 0);
+    for (std::size_t round = 0; round < kRounds; ++round) {
+        for (std::size_t i = round * kInRound; i < (round + 1) * kInRound; ++i) {
+            for (const auto& peer : peers) {
+                ASSERT_TRUE(sender->send(loopback(peer->local_port()), marked(i)));
+            }
+        }
+        sender->flush();
+        for (std::size_t i = 0; i < peers.size(); ++i) {
+            for (const Datagram& datagram : receive(*peers[i], kInRound)) {
+                ASSERT_EQ(datagram, marked(arrived[i]));
+                ++arrived[i];
+            }
+        }
+    }
+    for (const std::size_t count : arrived) EXPECT_EQ(count, kRounds * kInRound);
+    EXPECT_EQ(sender->stats().datagrams_sent, peers.size() * kRounds * kInRound);
+    for (const auto& [reason, count] : sender->drops()) EXPECT_EQ(count, 0U) << reason;
+}
+
+TEST_P(UdpBatch, a_datagram_of_no_bytes_arrives_as_such) {
+    const auto a = open_any(GetParam());
+    const auto b = open_any(GetParam());
+    ASSERT_TRUE(a->send(loopback(b->local_port()), {}));
+    a->flush();
+    EXPECT_EQ(receive(*b, 1), std::vector<Datagram>(1));
+}
+
+TEST_P(UdpBatch, a_peer_that_has_gone_keeps_nothing_from_the_others) {
+    const auto sender = open_any(GetParam());
+    const auto here = open_any(GetParam());
+    const Address gone = loopback(open_any()->local_port());
+    for (std::size_t i = 0; i < 200; ++i) {
+        EXPECT_TRUE(sender->send(gone, marked(i)));
+        EXPECT_TRUE(sender->send(loopback(here->local_port()), marked(i)));
+    }
+    sender->flush();
+    const std::vector<Datagram> received = receive(*here, 200);
+    ASSERT_EQ(received.size(), 200U);
+    for (std::size_t i = 0; i < received.size(); ++i) EXPECT_EQ(received[i], marked(i));
+    EXPECT_EQ(sender->drops().at("send_failed"), 0U);
+    EXPECT_EQ(sender->poll(0.0, [](const Address&, std::span<const std::uint8_t>) {}), 0U);
+}
+
+TEST_P(UdpBatch, what_the_receiver_has_no_room_for_is_counted_there) {
+    constexpr std::size_t kMany = 20'000;
+    const auto sender = open_any(GetParam());
+    const auto receiver = open_any(GetParam());
+    for (std::size_t i = 0; i < kMany; ++i) {
+        ASSERT_TRUE(sender->send(loopback(receiver->local_port()), marked(i)));
+    }
+    sender->flush();
+    ASSERT_EQ(sender->stats().datagrams_sent, kMany);
+    const std::size_t received = receive(*receiver, kMany).size();
+    EXPECT_LT(received, kMany);
+    EXPECT_EQ(received + receiver->drops().at("receive_buffer_full"), kMany);
+}
+
+TEST(Udp, datagrams_leave_and_arrive_in_few_calls_of_the_system) {
+    const auto a = open_any();
+    const auto b = open_any();
+    for (std::size_t i = 0; i < 60; ++i) a->send(loopback(b->local_port()), marked(i));
+    EXPECT_EQ(a->stats().send_calls, 0U);
+    a->flush();
+    EXPECT_EQ(a->stats().send_calls, 1U);
+    EXPECT_EQ(receive(*b, 60).size(), 60U);
+    EXPECT_EQ(b->stats().receive_calls, 1U);
+}
+
+TEST(Udp, what_was_sent_leaves_with_the_next_poll_and_with_the_end_of_the_socket) {
+    auto a = open_any();
+    const auto b = open_any();
+    const auto ignore = [](const Address&, std::span<const std::uint8_t>) {};
+    a->send(loopback(b->local_port()), marked(1));
+    a->poll(0.0, ignore);
+    EXPECT_EQ(receive(*b, 1).size(), 1U);
+    a->send(loopback(b->local_port()), marked(2));
+    a.reset();
+    EXPECT_EQ(receive(*b, 1).size(), 1U);
+}
+
+TEST(Udp, an_ipv6_address_is_refused_and_counted_by_a_socket_that_is_bound_to_ipv4) {
+    std::string error;
+    const auto v4 = UdpTransport::open("127.0.0.1", 0, error);
+    ASSERT_TRUE(v4) << error;
+    EXPECT_FALSE(v4->send(resolve("::1", 7777).address.value(), marked(1)));
+    EXPECT_EQ(v4->drops().at("send_unroutable"), 1U);
+    const auto other = UdpTransport::open("127.0.0.1", 0, error);
+    EXPECT_TRUE(v4->send(loopback(other->local_port()), marked(1)));
+    v4->flush();
+    EXPECT_EQ(receive(*other, 1), std::vector<Datagram>{marked(1)});
 }
 
 TEST(Udp, a_port_in_use_is_named_together_with_a_remedy) {
