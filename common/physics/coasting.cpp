@@ -34,7 +34,7 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
     apart_.clear();
     free_apart_ = kNobody;
     calendar_.reset(bodies.slots());
-    found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kFilterSpare);
+    found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kGatherSpare);
     index_of_.resize(bodies.ids.size());
     body_at_.resize(bodies.slots());
     living_.clear();
@@ -63,14 +63,16 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
 template <typename Scalar>
 template <bool kPeriodic, bool kWalls, bool kPlatform>
 void Coasting<Scalar>::choose() {
+    const auto choose_as = [&]<typename Has>(Has) {
+        next_ = &Coasting::next_as<Has>;
+        predict_ = &Coasting::predict_as<Has>;
+        predict_as_seen_ = &Coasting::predict_as_seen_as<Has>;
+    };
+    kernels_ = &flight_kernels<Scalar>(best_simd_level(), model_.equal_radii);
     if (model_.equal_radii) {
-        using Has = Features<kPeriodic, kWalls, kPlatform, true>;
-        next_ = &Coasting::next_as<Has>;
-        predict_ = &Coasting::predict_as<Has>;
+        choose_as(Features<kPeriodic, kWalls, kPlatform, true>());
     } else {
-        using Has = Features<kPeriodic, kWalls, kPlatform, false>;
-        next_ = &Coasting::next_as<Has>;
-        predict_ = &Coasting::predict_as<Has>;
+        choose_as(Features<kPeriodic, kWalls, kPlatform, false>());
     }
 }
 
@@ -312,6 +314,17 @@ void Coasting<Scalar>::predict_as(std::uint32_t body) {
 
 template <typename Scalar>
 template <typename Has>
+void Coasting<Scalar>::predict_as_seen_as(std::uint32_t sight, std::uint32_t body) {
+    if (!sights_[sight].is_whole) return predict_as<Has>(body);
+    Meeting best{kNever<double>, kNobody};
+    look_at<Has>(sights_[sight].about, body, Image(), best);
+    expect(body, best);
+    expect_border<Has>(body);
+    enter_in_calendar(body);
+}
+
+template <typename Scalar>
+template <typename Has>
 void Coasting<Scalar>::expect_meeting(std::uint32_t body) {
     Meeting best{kNever<double>, kNobody};
     look<Has>(body, View(), best);
@@ -329,22 +342,25 @@ void Coasting<Scalar>::expect(std::uint32_t body, const Meeting& meeting) {
 template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) {
-    const auto look_here = [&](std::uint32_t* end, Image image) {
-        look_at<Has>(end, body, image, best);
-    };
-    find<Has::kPeriodic>(flights_[body], view, look_here);
+    const Flight& self = flights_[body];
+    find<Has::kPeriodic>(self, view, [&](std::uint32_t* end, Image image) {
+        gather(end, body, kNobody, self.since_s, about_,
+               [&](const Neighbours<Scalar>& about) { look_at<Has>(about, body, image, best); });
+    });
 }
 
 template <typename Scalar>
 template <typename Has>
-void Coasting<Scalar>::look_at(std::uint32_t* end, std::uint32_t body, Image image, Meeting& best) {
-    const Filter<Scalar> filter{flights_.data(), flights_[body],   body,     kNobody,
-                                shift_of(image), Has::kEqualRadii, Scalar(0)};
-    const auto passed = filter(found_.data(), end);
-    for (const std::uint32_t* at = found_.data(); at != passed.end; ++at) {
-        const Flight& it = flights_[*at];
-        const Scalar reach_m = filter.self.radius_m + it.radius_m;
-        consider(body, *at, image, {filter.self, it, filter.shift_m}, reach_m, best);
+void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image,
+                               Meeting& best) {
+    const Flight& self = flights_[body];
+    const Vec shift_m = shift_of(image);
+    for (std::uint32_t bits = kernels_->may_meet(about, self, shift_m); bits != 0;
+         bits &= bits - 1) {
+        const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+        const Scalar radius_m = Has::kEqualRadii ? self.radius_m : about.radius_m[k];
+        consider(body, about.body[k], image, {self, about, k, shift_m}, self.radius_m + radius_m,
+                 best);
     }
 }
 
@@ -376,20 +392,6 @@ void Coasting<Scalar>::consider(std::uint32_t body, std::uint32_t other, Image i
         if (are_kept_apart(body, other, image)) return;
     }
     best = {time_s, other};
-}
-
-template <typename Scalar>
-bool Coasting<Scalar>::has_about(std::uint32_t body, std::uint32_t partner, Scalar factor) {
-    Flight self = flights_[body];
-    self.position_m = position_m(body);
-    self.since_s = now_s_;
-    bool has = false;
-    find<true>(self, View(), [&](std::uint32_t* end, Image image) {
-        const Filter<Scalar> filter{flights_.data(),    self,  body, partner, shift_of(image),
-                                    model_.equal_radii, factor};
-        has |= filter(found_.data(), end).any_close;
-    });
-    return has;
 }
 
 template <typename Scalar>

@@ -25,7 +25,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -110,12 +112,26 @@ class Coasting {
     void keep_apart(std::uint32_t a, std::uint32_t b);
     void keep_off_wall(std::uint32_t body, std::uint32_t side);
     bool is_immovable(std::uint32_t body) const { return std::isinf(prospects_[body].mass_kg); }
+    // Whether no cell is beyond that of the body on a side: all that touch the wall there are such.
+    bool is_outermost(std::uint32_t body, std::uint32_t side) const {
+        const std::uint32_t axis = side / 2;
+        return flights_[body].cell[axis] == (side % 2 == 0 ? 0 : cells_.last(axis));
+    }
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
-    // Whether the distance of any other body but `partner` to `body`, now, is below `factor` times
-    // their reach. No, only of those in the cells about it: `factor` is hardly more than 1.
-    bool has_about(std::uint32_t body, std::uint32_t partner, Scalar factor);
+    // Calls visit(other, separation) for everybody but `partner` whose distance to `body`, now, is
+    // below `factor` times their reach, once for each image, in no order. Only of those in the
+    // cells about it: `factor` is hardly more than 1. What is seen is kept for predict_as_seen, as
+    // one of the two sights of an event.
+    template <typename Visit>
+    void look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner, Scalar factor,
+                     Visit&& visit);
+    // The same as `predict`, after look_around in this event, in which nothing happened but to the
+    // body and its partner, who are kept apart.
+    void predict_as_seen(std::uint32_t sight, std::uint32_t body) {
+        (this->*predict_as_seen_)(sight, body);
+    }
     // Calls visit(other, separation) for every body in the cells about that of `body`, itself
     // included, once for each image, in ascending order of indices; the separation is from that
     // image to `body`, now.
@@ -128,7 +144,7 @@ class Coasting {
     enum class Border : std::uint8_t { kNone, kCell, kWall, kFall };
 
     // What else is known of a body.
-    struct Prospect {
+    struct alignas(64) Prospect {
         double meeting_s = 0.0;
         double border_s = 0.0;
         double hit_s = 0.0;  // the last event
@@ -164,6 +180,11 @@ class Coasting {
         std::uint32_t index = kNobody;
         Image image;
         friend auto operator<=>(const Near&, const Near&) = default;
+    };
+    // What a body saw about it.
+    struct Sight {
+        bool is_whole = false;  // it is all that there is, through no other image
+        Neighbours<Scalar> about;
     };
     // Of the nine cells about a body's own, counted from the lowest corner.
     struct View {
@@ -202,11 +223,17 @@ class Coasting {
     void expect_border(std::uint32_t body);
     template <typename Has>
     void look(std::uint32_t body, const View& view, Meeting& best);
-    // At those in found_, up to `end`.
     template <typename Has>
-    void look_at(std::uint32_t* end, std::uint32_t body, Image image, Meeting& best);
+    void predict_as_seen_as(std::uint32_t sight, std::uint32_t body);
+    template <typename Has>
+    void look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image, Meeting& best);
     void consider(std::uint32_t body, std::uint32_t other, Image image,
                   const Approach<Scalar>& approach, Scalar reach_m, Meeting& best) const;
+    // Calls visit(about) for those in found_ up to `end`, as they are since a moment at which a
+    // flight of `body` begins.
+    template <typename Visit>
+    void gather(std::uint32_t* end, std::uint32_t body, std::uint32_t partner, double since_s,
+                Neighbours<Scalar>& about, Visit&& visit);
     template <typename Has>
     void cross(std::uint32_t body);
     void expect(std::uint32_t body, const Meeting& meeting);
@@ -236,6 +263,8 @@ class Coasting {
     std::uint32_t turns_to_rebase_ = 0;
     Due (Coasting::*next_)() = nullptr;
     void (Coasting::*predict_)(std::uint32_t) = nullptr;
+    void (Coasting::*predict_as_seen_)(std::uint32_t, std::uint32_t) = nullptr;
+    const FlightKernels<Scalar>* kernels_ = nullptr;
 
     std::vector<Flight> flights_;  // by body, as are the next
     std::vector<Prospect> prospects_;
@@ -252,6 +281,8 @@ class Coasting {
     BucketCalendar calendar_;
     EventCells<Scalar> cells_;
     std::vector<std::uint32_t> found_;  // by cells_.find
+    Neighbours<Scalar> about_;
+    Sight sights_[2];
     std::vector<Near> near_;
     std::vector<Vec> sample_m_;
 };
@@ -269,6 +300,41 @@ void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
     for (const auto& [index, image] : near_) {
         const std::uint32_t other = body_at_[index];
         visit(other, Vec((position - position_m(other)) - shift_of(image)));
+    }
+}
+
+template <typename Scalar>
+template <typename Visit>
+void Coasting<Scalar>::look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner,
+                                   Scalar factor, Visit&& visit) {
+    Sight& seen = sights_[sight];
+    const Flight& self = flights_[body];
+    const Vec position = position_m(body);
+    std::uint32_t looks = 0;
+    find<true>(self, View(), [&](std::uint32_t* end, Image image) {
+        const Vec shift_m = shift_of(image);
+        gather(end, body, partner, now_s_, seen.about, [&](const Neighbours<Scalar>& about) {
+            ++looks;
+            std::uint32_t close = kernels_->close(about, position - shift_m, self.radius_m, factor);
+            for (; close != 0; close &= close - 1) {
+                const std::uint32_t other = about.body[std::countr_zero(close)];
+                visit(other, Vec((position - position_m(other)) - shift_m));
+            }
+        });
+    });
+    seen.is_whole = looks == 1 && !(model_.periodic && is_at_border(self));
+}
+
+template <typename Scalar>
+template <typename Visit>
+void Coasting<Scalar>::gather(std::uint32_t* end, std::uint32_t body, std::uint32_t partner,
+                              double since_s, Neighbours<Scalar>& about, Visit&& visit) {
+    std::fill_n(end, kGatherSpare, body);
+    for (const std::uint32_t* at = found_.data(); at < end; at += Neighbours<Scalar>::kMost) {
+        const auto count = std::min<std::ptrdiff_t>(end - at, Neighbours<Scalar>::kMost);
+        kernels_->gather(flights_.data(), at, static_cast<std::uint32_t>(count), body, partner,
+                         since_s, about);
+        visit(about);
     }
 }
 

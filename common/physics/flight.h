@@ -1,4 +1,4 @@
-// A body in straight flight, and which of those about it are on their way to it.
+// A body in straight flight, and those about it.
 #pragma once
 
 #include <algorithm>
@@ -26,26 +26,44 @@ struct alignas(64) Flight {
     }
 };
 
+// Flights side by side, for vector instructions.
+template <typename Scalar>
+struct Neighbours {
+    static constexpr std::uint32_t kMost = 32;
+
+    std::uint32_t count = 0;
+    // Where each is when the later of two flights began, its own and that of the body they are
+    // about; NaN for those that are left out.
+    alignas(64) Scalar x_m[kMost] = {};
+    alignas(64) Scalar y_m[kMost] = {};
+    alignas(64) Scalar x_mps[kMost] = {};
+    alignas(64) Scalar y_mps[kMost] = {};
+    alignas(64) double from_s[kMost] = {};
+    alignas(64) Scalar radius_m[kMost] = {};  // not there where all radii are equal
+    alignas(64) std::uint32_t body[kMost] = {};
+};
+
 // By how many units of round-off a pair may seem to miss, or to meet too late, and still be
 // computed exactly.
 template <typename Scalar>
 inline constexpr Scalar kFilterSlack = Scalar(1) +
                                        Scalar(16) * std::numeric_limits<Scalar>::epsilon();
 
-// Two flights since the later one began, the first less the second.
+// Of a flight and one of those about it since the later one began, the first less the second.
 template <typename Scalar>
 struct Approach {
     double from_s;
     Scalar x_m, y_m;
     Scalar x_mps, y_mps;
 
-    Approach(const Flight<Scalar>& one, const Flight<Scalar>& other, const Vec2<Scalar>& shift_m)
-        : from_s(std::max(one.since_s, other.since_s)),
-          x_mps(one.velocity_mps.x() - other.velocity_mps.x()),
-          y_mps(one.velocity_mps.y() - other.velocity_mps.y()) {
-        const Vec2<Scalar> here = one.position_at(from_s), there = other.position_at(from_s);
-        x_m = (here.x() - there.x()) - shift_m.x();
-        y_m = (here.y() - there.y()) - shift_m.y();
+    Approach(const Flight<Scalar>& one, const Neighbours<Scalar>& about, std::uint32_t k,
+             const Vec2<Scalar>& shift_m)
+        : from_s(about.from_s[k]),
+          x_mps(one.velocity_mps.x() - about.x_mps[k]),
+          y_mps(one.velocity_mps.y() - about.y_mps[k]) {
+        const Vec2<Scalar> here = one.position_at(from_s);
+        x_m = (here.x() - about.x_m[k]) - shift_m.x();
+        y_m = (here.y() - about.y_m[k]) - shift_m.y();
     }
     Scalar rate() const { return x_m * x_mps + y_m * y_mps; }
     Scalar distance_squared() const { return x_m * x_m + y_m * y_m; }

@@ -44,7 +44,7 @@ class EventSolver final : public Solver<Scalar> {
 
     void touch(std::uint32_t a, std::uint32_t b, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
-    bool touches_another(std::uint32_t body, std::uint32_t partner);
+    bool touches_another(std::uint32_t sight, std::uint32_t body, std::uint32_t partner);
     bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
     bool touches_wall(std::uint32_t body, std::uint32_t side) const;
     Scalar extent_m(std::uint32_t body) const;
@@ -111,13 +111,14 @@ template <typename Scalar>
 std::uint32_t EventSolver<Scalar>::process(const Due& due) {
     switch (due.what) {
         case Happening::kMeeting:
-            if (touches_another(due.body, due.other) || touches_another(due.other, due.body)) {
+            if (touches_another(0, due.body, due.other) ||
+                touches_another(1, due.other, due.body)) {
                 return collide_together(due);
             }
             return meet(due.body, due.other);
         case Happening::kWall:
-            return touches_another(due.body, due.body) ? collide_together(due)
-                                                       : hit_wall(due.body, due.other);
+            return touches_another(0, due.body, due.body) ? collide_together(due)
+                                                          : hit_wall(due.body, due.other);
         case Happening::kFall:
             return fall(due.body);
         case Happening::kNothing:
@@ -162,8 +163,9 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
     coasting_.keep_apart(a, b);
-    if (a == due || !coasting_.is_immovable(a)) coasting_.predict(a);
-    if (b == due || !coasting_.is_immovable(b)) coasting_.predict(b);
+    const std::uint32_t sight_of_a = in_order ? 0 : 1;
+    if (a == due || !coasting_.is_immovable(a)) coasting_.predict_as_seen(sight_of_a, a);
+    if (b == due || !coasting_.is_immovable(b)) coasting_.predict_as_seen(1 - sight_of_a, b);
     return 1;
 }
 
@@ -188,7 +190,7 @@ std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t si
     account(record_->contacts.back(), record_->audit);
     coasting_.set_position(body, position);
     coasting_.turn(body, after);
-    coasting_.predict(body);
+    coasting_.predict_as_seen(0, body);
     return 1;
 }
 
@@ -305,18 +307,16 @@ Scalar EventSolver<Scalar>::clock_slack_s(std::uint32_t a, std::uint32_t b) cons
 }
 
 template <typename Scalar>
-bool EventSolver<Scalar>::touches_another(std::uint32_t body, std::uint32_t partner) {
+bool EventSolver<Scalar>::touches_another(std::uint32_t sight, std::uint32_t body,
+                                          std::uint32_t partner) {
     for (std::uint32_t side = 0; model_->walls && side < 4; ++side) {
         if (body != partner && touches_wall(body, side)) return true;
     }
-    if (!coasting_.has_about(body, partner, static_cast<Scalar>(1.0 + 2.0 * kTouchWithin))) {
-        return false;
-    }
     bool found = false;
-    coasting_.for_each_near(body, [&](std::uint32_t other, const Vec& separation) {
-        if (!are_touching(body, other, separation) || other == body || other == partner) return;
-        found = true;
-    });
+    coasting_.look_around(sight, body, partner, static_cast<Scalar>(1.0 + 2.0 * kTouchWithin),
+                          [&](std::uint32_t other, const Vec& separation) {
+                              found = found || are_touching(body, other, separation);
+                          });
     return found;
 }
 
@@ -335,7 +335,7 @@ bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b,
 
 template <typename Scalar>
 bool EventSolver<Scalar>::touches_wall(std::uint32_t body, std::uint32_t side) const {
-    if (!model_->walls) return false;
+    if (!model_->walls || !coasting_.is_outermost(body, side)) return false;
     const std::uint32_t axis = side / 2;
     const Scalar radius = coasting_.flight(body).radius_m;
     const Scalar position = coasting_.position_m(body)[axis];

@@ -1,7 +1,10 @@
-// The filter of those who may meet: the same with vector instructions as one by one.
+// Those about a body, and who of them may meet it: the same with vector instructions as one by one.
 #include "common/physics/flight_filter.h"
 
-#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,7 +32,27 @@ class FlightFilter : public testing::Test {};
 using Scalars = testing::Types<double, float>;
 TYPED_TEST_SUITE(FlightFilter, Scalars);
 
-TYPED_TEST(FlightFilter, lets_the_same_pass_as_one_by_one_and_nobody_out_who_meets) {
+template <typename Scalar>
+void expect_same_bits(const Scalar* one, const Scalar* other, std::uint32_t k) {
+    ASSERT_EQ(std::memcmp(one + k, other + k, sizeof(Scalar)), 0) << k;
+}
+
+template <typename Scalar>
+void expect_same(const Neighbours<Scalar>& one, const Neighbours<Scalar>& other, bool equal_radii) {
+    ASSERT_EQ(one.count, other.count);
+    for (std::uint32_t k = 0; k < one.count; ++k) {
+        ASSERT_EQ(one.body[k], other.body[k]);
+        ASSERT_EQ(std::isnan(one.x_m[k]), std::isnan(other.x_m[k]));
+        if (!std::isnan(one.x_m[k])) expect_same_bits(one.x_m, other.x_m, k);
+        expect_same_bits(one.y_m, other.y_m, k);
+        expect_same_bits(one.x_mps, other.x_mps, k);
+        expect_same_bits(one.y_mps, other.y_mps, k);
+        expect_same_bits(one.from_s, other.from_s, k);
+        if (!equal_radii) expect_same_bits(one.radius_m, other.radius_m, k);
+    }
+}
+
+TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_meets) {
     using Scalar = TypeParam;
     constexpr std::uint64_t kSeed = 73;
     SCOPED_TRACE(kSeed);
@@ -37,33 +60,45 @@ TYPED_TEST(FlightFilter, lets_the_same_pass_as_one_by_one_and_nobody_out_who_mee
     std::size_t passed_in_all = 0, close_in_all = 0, met_in_all = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         const bool equal_radii = trial % 2 == 0;
-        const auto count = static_cast<std::uint32_t>(1 + dice.below(14));
+        const auto count = static_cast<std::uint32_t>(1 + dice.below(Neighbours<Scalar>::kMost));
         const auto flights = random_flights<Scalar>(count, equal_radii, dice);
         const auto body = static_cast<std::uint32_t>(dice.below(count));
         const auto partner = static_cast<std::uint32_t>(dice.below(2 * count));
         const Vec2<Scalar> shift(static_cast<Scalar>(trial % 3 == 0 ? 1.5 : 0.0), Scalar(0));
-        const Filter<Scalar> filter{flights.data(), flights[body], body,        partner,
-                                    shift,          equal_radii,   Scalar(1.25)};
-        std::vector<std::uint32_t> some(count + kFilterSpare), one_by_one;
-        for (std::uint32_t k = 0; k < count; ++k) some[k] = k;
-        one_by_one = some;
-        const auto passed = filter(some.data(), some.data() + count);
-        const auto expected = filter.one_by_one(one_by_one.data(), one_by_one.data() + count);
-        const auto kept = static_cast<std::size_t>(passed.end - some.data());
-        ASSERT_EQ(kept, static_cast<std::size_t>(expected.end - one_by_one.data())) << trial;
-        for (std::size_t k = 0; k < kept; ++k) ASSERT_EQ(some[k], one_by_one[k]) << trial;
-        ASSERT_EQ(passed.any_close, expected.any_close) << trial;
-        passed_in_all += kept;
-        close_in_all += passed.any_close ? 1 : 0;
-        for (std::uint32_t other = 0; other < count; ++other) {
-            if (other == body || other == partner) continue;
-            const Approach<Scalar> way(flights[body], flights[other], shift);
-            const Scalar reach_m = flights[body].radius_m + flights[other].radius_m;
+        const Flight<Scalar>& self = flights[body];
+        std::vector<std::uint32_t> all(count + kGatherSpare, body);
+        std::iota(all.begin(), all.begin() + count, 0U);
+        Neighbours<Scalar> plain, about;
+        const auto& plainly = flight_kernels<Scalar>(SimdLevel::kPlain, equal_radii);
+        plainly.gather(flights.data(), all.data(), count, body, partner, self.since_s, plain);
+        const auto may_meet = plainly.may_meet(plain, self, shift);
+        const auto close =
+            plainly.close(plain, self.position_m, self.radius_m, static_cast<Scalar>(1.25));
+        for (const SimdLevel level : {SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+            if (!is_supported(level)) continue;
+            const auto& kernels = flight_kernels<Scalar>(level, equal_radii);
+            kernels.gather(flights.data(), all.data(), count, body, partner, self.since_s, about);
+            expect_same(about, plain, equal_radii);
+            ASSERT_EQ(kernels.may_meet(about, self, shift), may_meet) << trial;
+            ASSERT_EQ(
+                kernels.close(about, self.position_m, self.radius_m, static_cast<Scalar>(1.25)),
+                close)
+                << trial;
+        }
+        passed_in_all += static_cast<std::size_t>(std::popcount(may_meet));
+        close_in_all += static_cast<std::size_t>(std::popcount(close));
+        for (std::uint32_t k = 0; k < count; ++k) {
+            if (k == body || k == partner) {
+                ASSERT_EQ((may_meet | close) >> k & 1U, 0U);
+                continue;
+            }
+            const Approach<Scalar> way(self, plain, k, shift);
+            const Scalar reach_m = self.radius_m + flights[k].radius_m;
             const Scalar wait_s =
                 time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps}, reach_m);
             if (wait_s == kNever<Scalar>) continue;
             ++met_in_all;
-            ASSERT_NE(std::find(some.data(), passed.end, other), passed.end) << trial;
+            ASSERT_EQ(may_meet >> k & 1U, 1U) << trial;
         }
     }
     EXPECT_GT(met_in_all, 1000U);
