@@ -1,13 +1,12 @@
 #include "server/lab/bench_command.h"
 
 #include <cstdio>
-#include <exception>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "server/lab/bench/bench.h"
 #include "server/lab/exit_codes.h"
@@ -20,7 +19,7 @@ namespace fts::lab {
 namespace {
 
 constexpr unsigned kMaxRepeats = 1000;
-constexpr double kQuickRepeatS = 0.02;
+constexpr double kRepeatS = 0.1, kQuickRepeatS = 0.02;
 
 struct Options {
     std::vector<std::string> engines;  // empty: all
@@ -32,6 +31,25 @@ struct Options {
     bool quick = false;
     std::string json_file, svg_file;
 };
+
+// What was not asked for by its option becomes less.
+void shorten(const CLI::App& command, Options& options) {
+    if (command.count("--balls") == 0) options.balls = {32, 2'000};
+    if (command.count("--packing") == 0) options.packings = {0.3};
+    if (command.count("--radii") == 0) options.radii = {"equal"};
+}
+
+std::string command_of(const Options& options) {
+    std::string command = "fts-lab bench";
+    if (!options.engines.empty()) {
+        command += fmt::format(" --engine {}", fmt::join(options.engines, ","));
+    }
+    command +=
+        fmt::format(" --balls {} --packing {} --radii {} --speed {} --repeats {}",
+                    fmt::join(options.balls, ","), fmt::join(options.packings, ","),
+                    fmt::join(options.radii, ","), fmt::join(options.speeds, ","), options.repeats);
+    return options.quick ? command + " --quick" : command;
+}
 
 BenchMatrix matrix_of(const Options& options) {
     BenchMatrix matrix{options.engines, options.balls, options.packings, {}, options.speeds};
@@ -57,7 +75,7 @@ std::string picture_of(const Options& options, const std::vector<BenchResult>& r
     plot.subtitle = "The first scene, " + text_of(fixed) +
                     ", and those that differ from it in the horizontal axis alone. Open marks and "
                     "dashed lines of solvers are float.";
-    plot.footnote = "fts-lab bench";
+    plot.footnote = command_of(options);
     if (results.size() < of) {
         plot.footnote += "   (stopped after " + std::to_string(results.size()) + " of " +
                          std::to_string(of) + ")";
@@ -82,33 +100,20 @@ bool written(Output* output, const std::string& text) {
     return false;
 }
 
-// Empty, with stderr told, when a scene cannot be made.
-std::optional<std::vector<BenchResult>> measured(const std::vector<BenchCell>& cells,
-                                                 const BenchLimits& limits) {
+std::vector<BenchResult> measured(const std::vector<BenchCell>& cells, const BenchLimits& limits) {
     ProgressBar bar;
-    try {
-        return measure_cells(cells, limits, nobody_interrupted,
-                             [&](std::size_t done, const BenchCell& next) {
-                                 bar.show(done, cells.size(), name_of(next));
-                             });
-    } catch (const std::exception& error) {
-        complain(error.what());
-        return std::nullopt;
-    }
+    return measure_cells(cells, limits, nobody_interrupted,
+                         [&](std::size_t done, const BenchCell& next) {
+                             bar.show(done, cells.size(), name_of(next));
+                         });
 }
 
-int execute(Options options) {
+int execute(const Options& options) {
     if (options.json_file == "-" && options.svg_file == "-") {
         complain("--json and --svg both go to the terminal; give one of them a file");
         return kExitUsage;
     }
-    BenchLimits limits{options.repeats, 0.1};
-    if (options.quick) {
-        options.balls = {32, 2'000};
-        options.packings = {0.3};
-        options.radii = {"equal"};
-        limits.seconds_of_a_repeat = kQuickRepeatS;
-    }
+    const BenchLimits limits{options.repeats, options.quick ? kQuickRepeatS : kRepeatS};
     std::unique_ptr<Output> json, svg;
     if (!opened(options.json_file, "--json", json) || !opened(options.svg_file, "--svg", svg)) {
         return kExitFailure;
@@ -116,16 +121,15 @@ int execute(Options options) {
     listen_for_interruption();
     const auto cells = cells_of(matrix_of(options));
     const auto results = measured(cells, limits);
-    if (!results) return kExitUsage;
     const bool to_stdout = options.json_file == "-" || options.svg_file == "-";
     std::FILE* const terminal = to_stdout ? stderr : stdout;
-    std::fputs(table_of(*results).c_str(), terminal);
-    const bool stopped = results->size() < cells.size();
+    std::fputs(table_of(results).c_str(), terminal);
+    const bool stopped = results.size() < cells.size();
     if (stopped) {
-        std::fprintf(terminal, "stopped after %zu of %zu\n", results->size(), cells.size());
+        std::fprintf(terminal, "stopped after %zu of %zu\n", results.size(), cells.size());
     }
-    const bool good = written(json.get(), json_of(*results)) &&
-                      written(svg.get(), picture_of(options, *results, cells.size()));
+    const bool good = written(json.get(), json_of(results)) &&
+                      written(svg.get(), picture_of(options, results, cells.size()));
     if (stopped) return kExitInterrupted;
     return good ? 0 : kExitFailure;
 }
@@ -169,10 +173,13 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1U, kMaxRepeats))
         ->capture_default_str();
     command->add_flag("--quick", options->quick,
-                      "Two sizes, one density and equal radii, timed in a hurry");
+                      "Timed in a hurry; two sizes, one density and equal radii where not given");
     command->add_option("--json", options->json_file, "File for all figures; - for the terminal");
     command->add_option("--svg", options->svg_file, "File for a picture; - for the terminal");
-    command->callback([options, &exit_code] { exit_code = execute(*options); });
+    command->callback([command, options, &exit_code] {
+        if (options->quick) shorten(*command, *options);
+        exit_code = execute(*options);
+    });
 }
 
 }  // namespace fts::lab

@@ -36,6 +36,7 @@ std::vector<BenchCell> target_cells() {
     auto cells = lab::cells_of({engines, {10'000}, {0.3}, {Radii::kEqual}, {kSlow, kFast}});
     cells.push_back({"event-double", {10'000, 0.1, Radii::kEqual, kSlow}});
     cells.push_back({"event-double", {100'000, 0.3, Radii::kEqual, kSlow}});
+    cells.push_back({"discrete-double", {1'000'000, 0.3, Radii::kEqual, kSlow}});
     return cells;
 }
 

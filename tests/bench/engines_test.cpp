@@ -45,6 +45,7 @@ TEST_P(EveryPhysicsEngine, keeps_balls_in_their_box_and_ours_their_energy) {
         const physics::Scene scene = balls_of(what);
         Specimen specimen({GetParam().name, what});
         EXPECT_LT(specimen.laws().energy_error, largest_energy_error(GetParam()));
+        EXPECT_EQ(specimen.laws().ticks, warm_up_ticks(what));
         for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
             const BallState ball = specimen.engine().ball(i);
             // Who steps first and looks then may leave a ball outside by as much as it moves.
@@ -78,6 +79,16 @@ TEST(HeadOnPairs, pass_through_each_other_where_nothing_looks_between_ticks) {
     EXPECT_NEAR(discrete.per_1000(), 500.0, 60.0);
     EXPECT_EQ(shoot_head_on("swept-double", 4.0, 1000).through, 0U);
     EXPECT_EQ(shoot_head_on("event-double", 4.0, 1000).through, 0U);
+}
+
+TEST(WarmUp, is_shorter_the_larger_and_faster_the_scene_and_moves_a_ball_by_a_radius) {
+    EXPECT_EQ(warm_up_ticks({32, 0.3, Radii::kEqual, 0.05}), 60U);
+    EXPECT_EQ(warm_up_ticks({10'000, 0.3, Radii::kEqual, 0.05}), 60U);
+    EXPECT_EQ(warm_up_ticks({10'000, 0.3, Radii::kEqual, 2.0}), 10U);
+    EXPECT_EQ(warm_up_ticks({100'000, 0.3, Radii::kEqual, 0.05}), 20U);
+    EXPECT_EQ(warm_up_ticks({1'000'000, 0.3, Radii::kEqual, 0.05}), 20U);
+    EXPECT_EQ(warm_up_ticks({1'000'000, 0.3, Radii::kEqual, 1e3}), 5U);
+    EXPECT_EQ(warm_up_ticks({1'000'000, 0.3, Radii::kEqual, 1e-3}), 60U);
 }
 
 TEST(BenchCell, is_its_name) {

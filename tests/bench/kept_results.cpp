@@ -14,9 +14,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Empty for what is no median.
+// Empty for what is neither a median nor was refused.
 std::optional<lab::BenchResult> result_of(const Json& run, const std::string& set) {
-    if (run.at("aggregate_name") != "median") return std::nullopt;
+    const bool was_refused = run.value("error_occurred", false);
+    if (!was_refused && run.value("aggregate_name", "") != "median") return std::nullopt;
     const auto name = run.at("run_name").get<std::string>().substr(set.size() + 1);
     const auto cell = lab::cell_from(name);
     if (!cell) throw std::runtime_error("'" + name + "' is no cell");
@@ -25,6 +26,10 @@ std::optional<lab::BenchResult> result_of(const Json& run, const std::string& se
     }
     lab::BenchResult result;
     result.cell = *cell;
+    if (was_refused) {
+        result.not_run = run.at("error_message");
+        return result;
+    }
     result.ns_per_ball_tick = run.at("ns_per_ball_tick");
     if (run.contains("collisions_per_s")) result.collisions_per_s = run.at("collisions_per_s");
     result.laws.energy_error = run.at("energy_error");

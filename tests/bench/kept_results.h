@@ -11,7 +11,7 @@
 namespace fts::bench {
 
 struct KeptSet {
-    std::vector<lab::BenchResult> results;  // the medians
+    std::vector<lab::BenchResult> results;  // the medians, and what was not run
     std::string machine;                    // what it was measured on
 };
 

@@ -1,6 +1,6 @@
 // fts-bench: every cell of every set as a Google Benchmark, called "SET/ENGINE/N:.../...". The time
-// is of ticks alone. To --benchmark_out go the medians of the repetitions, with their spread. See
-// scripts/bench.
+// is of ticks alone. To --benchmark_out go the medians of the repetitions, with their spread, and
+// why a cell was not run. See scripts/bench.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -19,8 +19,10 @@ namespace {
 
 void run_cell(benchmark::State& state, lab::SpecimenStore& store, const lab::BenchCell& cell) {
     using benchmark::Counter;
-    lab::Specimen& specimen = store.get(cell);
-    lab::Engine& engine = specimen.engine();
+    std::string not_run;
+    lab::Specimen* const specimen = store.get(cell, not_run);
+    if (specimen == nullptr) return state.SkipWithError(not_run.c_str());
+    lab::Engine& engine = specimen->engine();
     const auto before = engine.collisions();
     for ([[maybe_unused]] const auto tick : state) engine.step();
     state.counters["ns_per_ball_tick"] =
@@ -30,7 +32,7 @@ void run_cell(benchmark::State& state, lab::SpecimenStore& store, const lab::Ben
         state.counters["collisions_per_s"] =
             Counter(static_cast<double>(*engine.collisions() - *before), Counter::kIsRate);
     }
-    const lab::Laws& laws = specimen.laws();
+    const lab::Laws& laws = specimen->laws();
     state.counters["energy_error"] = laws.energy_error;
     state.counters["energy_error_after_ticks"] = static_cast<double>(laws.ticks);
     if (laws.head_on) {
@@ -39,14 +41,15 @@ void run_cell(benchmark::State& state, lab::SpecimenStore& store, const lab::Ben
     }
 }
 
-// What is shown and kept: medians and the coefficients of variation.
+// What is kept: medians, the coefficients of variation, and once what went wrong.
 template <typename Reporter>
 class MedianReporter : public Reporter {
   public:
     void ReportRuns(const std::vector<benchmark::BenchmarkReporter::Run>& runs) override {
         std::vector<benchmark::BenchmarkReporter::Run> kept;
         std::ranges::copy_if(runs, std::back_inserter(kept), [](const auto& run) {
-            return run.aggregate_name == "median" || run.aggregate_name == "cv";
+            return run.aggregate_name == "median" || run.aggregate_name == "cv" ||
+                   (run.error_occurred && run.repetition_index <= 0);
         });
         if (!kept.empty()) Reporter::ReportRuns(kept);
     }

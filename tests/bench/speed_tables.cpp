@@ -1,8 +1,8 @@
 #include "tests/bench/speed_tables.h"
 
 #include <algorithm>
-#include <functional>
 #include <optional>
+#include <utility>
 
 #include "server/lab/bench/engine.h"
 #include "server/lab/digits.h"
@@ -12,11 +12,14 @@
 namespace fts::bench {
 namespace {
 
+using lab::BenchCell;
 using lab::BenchResult;
 using lab::BenchScene;
 using lab::TextTable;
 using lab::with_digits;
 using Results = std::vector<BenchResult>;
+
+constexpr const char* kNotMeasured = "not measured";
 
 std::string ns_text(double ns) {
     return with_digits(ns < 10.0 ? "%.2f" : ns < 100.0 ? "%.1f" : "%.0f", ns);
@@ -34,6 +37,25 @@ std::optional<double> ratio(const Results& results, const std::string& engine,
     return lab::times_faster_than_chipmunk(results, *result);
 }
 
+// What is in the set and can be run, but has no result.
+bool is_missing(const std::string& set, const Results& results, const BenchCell& cell) {
+    const auto is_this = [&](const BenchCell& other) {
+        return other.engine == cell.engine && other.scene == cell.scene;
+    };
+    const auto& sets = bench_sets();
+    const auto found = std::ranges::find(sets, set, &BenchSet::name);
+    return found != sets.end() && std::ranges::any_of(found->cells, is_this) &&
+           lab::reason_not_to_run(cell).empty() &&
+           std::ranges::none_of(results, is_this, &BenchResult::cell);
+}
+
+// "-" where nothing is to be measured.
+std::string cost_text(const std::string& set, const Results& results, const BenchCell& cell) {
+    const auto* const result = lab::find_result(results, cell.engine, cell.scene);
+    if (result != nullptr) return ns_text(result->ns_per_ball_tick);
+    return is_missing(set, results, cell) ? kNotMeasured : "-";
+}
+
 std::optional<double> hits_per_s(const Results& results, const BenchScene& scene) {
     const BenchResult* const result = lab::find_result(results, "event-double", scene);
     return result == nullptr ? std::nullopt : result->collisions_per_s;
@@ -49,16 +71,16 @@ std::optional<double> growth_ratio(const Results& results) {
     return many->ns_per_ball_tick / few->ns_per_ball_tick;
 }
 
-accuracy::Table targets_table(const Results& targets, const Results& growth) {
+accuracy::Table targets_table(const Results& targets) {
     TextTable table({"what", "measured", "target", "reached"});
     const auto add = [&](const std::string& what, const std::optional<double>& value, double target,
                          bool at_least, const char* unit) {
-        if (!value) return;
         const double scale = unit == std::string(" M/s") ? 1e-6 : 1.0;
-        table.add(
-            {what, with_digits("%.3g", *value * scale) + unit,
-             (at_least ? "at least " : "at most ") + with_digits("%.3g", target * scale) + unit,
-             (at_least ? *value >= target : *value <= target) ? "yes" : "no"});
+        const std::string asked =
+            (at_least ? "at least " : "at most ") + with_digits("%.3g", target * scale) + unit;
+        if (!value) return table.add({what, kNotMeasured, asked, "-"});
+        table.add({what, with_digits("%.3g", *value * scale) + unit, asked,
+                   (at_least ? *value >= target : *value <= target) ? "yes" : "no"});
     };
     const auto slow = scene_at(10'000, 0.3, kSlow), fast = scene_at(10'000, 0.3, kFast);
     add("`discrete` double, times as fast as Chipmunk", ratio(targets, "discrete-double", slow),
@@ -73,8 +95,23 @@ accuracy::Table targets_table(const Results& targets, const Results& growth) {
     add("`event` double, 100,000 balls, collisions",
         hits_per_s(targets, scene_at(100'000, 0.3, kSlow)), 0.7e6, true, " M/s");
     add("`discrete` double, cost of a ball among a million to one among 10,000",
-        growth_ratio(growth), 2.5, false, "");
+        growth_ratio(targets), 2.5, false, "");
     return {"targets", table.markdown()};
+}
+
+bool is_left_out(const std::vector<std::string>& row) {
+    return std::ranges::all_of(row, [](const std::string& text) { return text == "-"; });
+}
+
+// Time, times Chipmunk, energy and what passed through.
+std::vector<std::string> laws_cells(const Results& results, const BenchCell& cell) {
+    const auto* const result = lab::find_result(results, cell.engine, cell.scene);
+    if (result == nullptr) return {cost_text("targets", results, cell), "-", "-", "-"};
+    const auto faster = lab::times_faster_than_chipmunk(results, *result);
+    const auto& head_on = result->laws.head_on;
+    return {ns_text(result->ns_per_ball_tick), faster ? with_digits("%.3g", *faster) : "-",
+            lab::energy_text(result->laws.energy_error),
+            head_on ? with_digits("%.0f", head_on->per_1000()) : "-"};
 }
 
 // Time and the laws beside each other: a fast wrong answer is not a result.
@@ -82,65 +119,96 @@ accuracy::Table laws_table(const Results& results) {
     TextTable table({"engine", "ns, slow", "times Chipmunk", "energy", "through", "ns, fast",
                      "times Chipmunk", "energy", "through"});
     for (const lab::EngineInfo& engine : lab::engines()) {
-        std::vector<std::string> row = {engine.title};
-        for (const double speed : {kSlow, kFast}) {
-            const auto* const result =
-                lab::find_result(results, engine.name, scene_at(10'000, 0.3, speed));
-            if (result == nullptr) break;
-            const auto faster = lab::times_faster_than_chipmunk(results, *result);
-            row.insert(
-                row.end(),
-                {ns_text(result->ns_per_ball_tick), faster ? with_digits("%.3g", *faster) : "-",
-                 lab::energy_text(result->laws.energy_error),
-                 result->laws.head_on ? with_digits("%.0f", result->laws.head_on->per_1000())
-                                      : "-"});
-        }
-        if (row.size() > 1) table.add(row);
+        auto row = laws_cells(results, {engine.name, scene_at(10'000, 0.3, kSlow)});
+        const auto fast = laws_cells(results, {engine.name, scene_at(10'000, 0.3, kFast)});
+        row.insert(row.end(), fast.begin(), fast.end());
+        if (is_left_out(row)) continue;
+        row.insert(row.begin(), engine.title);
+        table.add(row);
     }
     return {"laws", table.markdown()};
 }
 
-accuracy::Table growth_table(const Results& results) {
-    const std::vector<std::size_t> sizes = {32, 320, 3'200, 10'000, 100'000, 1'000'000};
+struct Column {
+    std::string head;
+    BenchScene scene;
+};
+
+// Without engines of which nothing is to be measured.
+accuracy::Table cost_table(const std::string& set, const Results& results,
+                           const std::vector<Column>& columns) {
     std::vector<std::string> heads = {"engine"};
-    for (const std::size_t size : sizes) heads.push_back(lab::grouped(size));
+    for (const Column& column : columns) heads.push_back(column.head);
     TextTable table(heads);
     for (const lab::EngineInfo& engine : lab::engines()) {
-        std::vector<std::string> row = {engine.title};
-        for (const std::size_t size : sizes) {
-            const auto* const result =
-                lab::find_result(results, engine.name, scene_at(size, 0.3, kSlow));
-            row.push_back(result == nullptr ? "-" : ns_text(result->ns_per_ball_tick));
+        std::vector<std::string> row;
+        for (const Column& column : columns) {
+            row.push_back(cost_text(set, results, {engine.name, column.scene}));
         }
+        if (is_left_out(row)) continue;
+        row.insert(row.begin(), engine.title);
         table.add(row);
     }
-    return {"growth", table.markdown()};
+    return {set, table.markdown()};
 }
 
-accuracy::Table matrix_table(const Results& results, double speed, const std::string& name) {
+accuracy::Table growth_table(const Results& results) {
+    std::vector<Column> columns;
+    const std::vector<std::size_t> sizes = {32, 320, 3'200, 10'000, 100'000, 1'000'000};
+    for (const std::size_t balls : sizes) {
+        columns.push_back({lab::grouped(balls), scene_at(balls, 0.3, kSlow)});
+    }
+    return cost_table("growth", results, columns);
+}
+
+accuracy::Table density_table(const Results& results) {
+    std::vector<Column> columns;
+    for (const double packing : {0.05, 0.1, 0.3, 0.5, 0.7}) {
+        columns.push_back({with_digits("%g", packing), scene_at(10'000, packing, kSlow)});
+    }
+    return cost_table("density", results, columns);
+}
+
+accuracy::Table speed_table(const Results& results) {
+    std::vector<Column> columns;
+    for (const double speed : {0.01, 0.05, 0.2, 1.0, 2.0}) {
+        columns.push_back({with_digits("%g r", speed), scene_at(10'000, 0.3, speed)});
+    }
+    return cost_table("speed", results, columns);
+}
+
+std::vector<BenchScene> scenes_of_matrix(double speed) {
+    const auto matrix = std::ranges::find(bench_sets(), std::string("matrix"), &BenchSet::name);
+    std::vector<BenchScene> scenes;
+    for (const BenchCell& cell : matrix->cells) {
+        if (cell.scene.radii_per_tick != speed) continue;
+        if (scenes.empty() || !(scenes.back() == cell.scene)) scenes.push_back(cell.scene);
+    }
+    return scenes;
+}
+
+std::string matrix_at(const Results& results, double speed) {
     std::vector<std::string> heads = {"balls, packing, radii"};
     for (const lab::EngineInfo& engine : lab::engines()) {
         if (!engine.is_floor) heads.push_back(engine.title);
     }
     TextTable table(heads);
-    std::vector<BenchScene> scenes;
-    for (const BenchResult& result : results) {
-        const BenchScene& scene = result.cell.scene;
-        if (scene.radii_per_tick != speed) continue;
-        if (scenes.empty() || !(scenes.back() == scene)) scenes.push_back(scene);
-    }
-    for (const BenchScene& scene : scenes) {
+    for (const BenchScene& scene : scenes_of_matrix(speed)) {
         std::vector<std::string> row = {lab::grouped(scene.balls) + ", " +
                                         with_digits("%g", scene.packing) + ", " +
                                         to_string(scene.radii)};
         for (const lab::EngineInfo& engine : lab::engines()) {
             if (engine.is_floor) continue;
-            const auto* const result = lab::find_result(results, engine.name, scene);
-            row.push_back(result == nullptr ? "-" : ns_text(result->ns_per_ball_tick));
+            row.push_back(cost_text("matrix", results, {engine.name, scene}));
         }
         table.add(row);
     }
-    return {name, table.markdown()};
+    return table.markdown();
+}
+
+accuracy::Table matrix_table(const Results& results) {
+    return {"matrix", "**Slow, 0.05 r a tick**\n\n" + matrix_at(results, kSlow) +
+                          "\n**Fast, 2 r a tick**\n\n" + matrix_at(results, kFast)};
 }
 
 const Results& results_in(const std::map<std::string, KeptSet>& sets, const std::string& name) {
@@ -162,14 +230,19 @@ std::vector<accuracy::Table> speed_tables(const std::map<std::string, KeptSet>& 
     std::vector<accuracy::Table> tables;
     if (sets.contains("targets")) {
         tables.push_back({"machine", sets.at("targets").machine + ".\n"});
-        tables.push_back(targets_table(results_in(sets, "targets"), results_in(sets, "growth")));
-        tables.push_back(laws_table(results_in(sets, "targets")));
     }
-    if (sets.contains("growth")) tables.push_back(growth_table(results_in(sets, "growth")));
-    if (sets.contains("matrix")) {
-        tables.push_back(matrix_table(results_in(sets, "matrix"), kSlow, "matrix-slow"));
-        tables.push_back(matrix_table(results_in(sets, "matrix"), kFast, "matrix-fast"));
-    }
+    const auto add = [&](const std::string& set, accuracy::Table table) {
+        if (!sets.contains(set)) {
+            table.markdown = "Not measured yet: `scripts/bench " + set + "`.\n";
+        }
+        tables.push_back(std::move(table));
+    };
+    add("targets", targets_table(results_in(sets, "targets")));
+    add("targets", laws_table(results_in(sets, "targets")));
+    add("growth", growth_table(results_in(sets, "growth")));
+    add("density", density_table(results_in(sets, "density")));
+    add("speed", speed_table(results_in(sets, "speed")));
+    add("matrix", matrix_table(results_in(sets, "matrix")));
     return tables;
 }
 

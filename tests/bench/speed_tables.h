@@ -10,7 +10,8 @@
 
 namespace fts::bench {
 
-// A set that was not measured leaves its tables and figures out.
+// A set that was not measured has a sentence for its tables, and no figure. In tables "-" is what
+// is left out, and "not measured" what is missing.
 std::vector<accuracy::Table> speed_tables(const std::map<std::string, KeptSet>& sets);
 std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>& sets);
 

@@ -15,15 +15,15 @@ namespace fts::lab {
 
 struct BenchResult {
     BenchCell cell;
-    std::string not_run;  // why; empty when measured
-    double ns_per_ball_tick = 0.0;
-    std::optional<double> collisions_per_s;  // of the machine's time; of ours only
+    std::string not_run;                     // why; empty when measured
+    double ns_per_ball_tick = 0.0;           // of CPU time
+    std::optional<double> collisions_per_s;  // of CPU time; of ours only
     Laws laws;
 };
 
 struct BenchLimits {
-    unsigned repeats = 3;  // of which the median counts
-    double seconds_of_a_repeat = 0.1;
+    unsigned repeats = 3;              // of which the median counts
+    double seconds_of_a_repeat = 0.1;  // of CPU time
 };
 
 // In the cells' order; what is not finished when `keep_going` says no is left out.

@@ -1,7 +1,6 @@
 #include "server/lab/bench/bench_cell.h"
 
 #include <sstream>
-#include <stdexcept>
 #include <variant>
 
 #include "common/physics/generator.h"
@@ -97,7 +96,7 @@ physics::Scene balls_of(const BenchScene& scene) {
     generator.speed_rms_mps = scene.radii_per_tick * kBenchRadiusM / kBenchTickS;
     auto filled = physics::fill({}, generator);
     if (const auto* const error = std::get_if<physics::SceneError>(&filled)) {
-        throw std::runtime_error(text_of(scene) + ": " + error->message);
+        throw SceneRefused(error->message);
     }
     return std::get<physics::Scene>(std::move(filled));
 }

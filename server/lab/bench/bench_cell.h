@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,11 @@ struct BenchMatrix {
 };
 std::vector<BenchCell> cells_of(const BenchMatrix& matrix);
 
-// The balls, in places and with velocities that are always the same. Throws std::runtime_error when
-// they do not fit.
+// The balls do not fit; what() says why.
+struct SceneRefused : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+// The balls, in places and with velocities that are always the same. Throws SceneRefused.
 physics::Scene balls_of(const BenchScene& scene);
 
 }  // namespace fts::lab

@@ -73,9 +73,10 @@ std::string table_of(const std::vector<BenchResult>& results) {
         first = i;
     }
     out +=
-        "  ns          cost per ball and tick; hits/s: collisions per second of computing\n"
-        "  energy      relative error of the kinetic energy after 60 ticks, fewer where they take "
-        "long\n"
+        "  ns          CPU time per ball and tick; hits/s: collisions per second of it\n"
+        "  energy      relative error of the kinetic energy after 60 ticks, fewer in large and "
+        "fast\n"
+        "              scenes, as many for every engine\n"
         "  through     of 1000 pairs that fly head on at each other at the scene's speed, those "
         "that\n"
         "              passed through each other\n"

@@ -24,6 +24,7 @@ class Engine {
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
+    // To the end of the tick, with all balls ready to be read.
     virtual void step() = 0;
     // Of body `i` of the scene.
     virtual BallState ball(std::size_t i) const = 0;

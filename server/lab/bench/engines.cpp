@@ -25,7 +25,12 @@ class WorldEngine : public Engine {
     WorldEngine(const Scene& scene, SolverKind solver, double tick_s)
         : world_(scene, {solver, 1}), tick_s_(static_cast<Scalar>(tick_s)) {}
 
-    void step() override { world_.step(tick_s_); }
+    // A solver may keep positions to itself until one is asked for, which brings all up to date.
+    // The peers have theirs at hand after every step, and a game reads them.
+    void step() override {
+        world_.step(tick_s_);
+        if (world_.size() > 0) world_.body(world_.ids().front());
+    }
 
     BallState ball(std::size_t i) const override {
         const auto body = world_.body(world_.ids()[i]);

@@ -1,6 +1,6 @@
 #include "server/lab/bench/specimen.h"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 
 #include "common/physics/splitmix.h"
@@ -8,9 +8,13 @@
 namespace fts::lab {
 namespace {
 
-constexpr std::size_t kWarmUpTicks = 60;
-constexpr double kWarmUpS = 3.0;
-constexpr std::size_t kMostBallsKept = 400'000;
+constexpr double kMostWarmUpTicks = 60.0;
+constexpr double kFewestWarmUpTicks = 5.0;
+// Radii that all balls together move in a warm-up. The slowest engine takes some 25 us for one.
+constexpr double kWarmUpRadii = 200'000.0;
+constexpr double kLeastRadiiPerTick = 0.1;  // slower balls cost as much
+// A million, and beside them what is compared with them.
+constexpr std::size_t kMostBallsKept = 1'500'000;
 constexpr std::uint64_t kSeedOfPairs = 2013;
 
 double kinetic_energy_j(const physics::Scene& scene, const Engine& engine) {
@@ -59,34 +63,53 @@ HeadOn shoot_head_on(const std::string& engine, double closing_radii_per_tick, s
     return result;
 }
 
+std::size_t warm_up_ticks(const BenchScene& scene) {
+    const double radii_a_tick =
+        static_cast<double>(scene.balls) * std::max(scene.radii_per_tick, kLeastRadiiPerTick);
+    const double until_a_radius = std::ceil(1.0 / scene.radii_per_tick);
+    const double fewest = std::clamp(until_a_radius, kFewestWarmUpTicks, kMostWarmUpTicks);
+    return static_cast<std::size_t>(
+        std::clamp(std::floor(kWarmUpRadii / radii_a_tick), fewest, kMostWarmUpTicks));
+}
+
 Specimen::Specimen(const BenchCell& cell) {
     const physics::Scene scene = balls_of(cell.scene);
     engine_ = make_engine(cell.engine, scene, kBenchTickS);
     const double before_j = kinetic_energy_j(scene, *engine_);
-    using Clock = std::chrono::steady_clock;
-    const auto end = Clock::now() + std::chrono::duration<double>(kWarmUpS);
-    while (laws_.ticks < kWarmUpTicks && (laws_.ticks < 2 || Clock::now() < end)) {
-        engine_->step();
-        ++laws_.ticks;
-    }
+    laws_.ticks = warm_up_ticks(cell.scene);
+    for (std::size_t tick = 0; tick < laws_.ticks; ++tick) engine_->step();
     const double error = std::abs(kinetic_energy_j(scene, *engine_) / before_j - 1.0);
     laws_.energy_error = std::isfinite(error) ? error : kEnergyLost;
 }
 
-Specimen& SpecimenStore::get(const BenchCell& cell) {
-    const std::string name = name_of(cell);
-    if (const auto found = specimens_.find(name); found != specimens_.end()) return found->second;
+Specimen* SpecimenStore::make(const BenchCell& cell, std::string& not_run) {
+    std::string& refused = refused_[text_of(cell.scene)];
+    if (refused.empty()) {
+        try {
+            return &specimens_.emplace(name_of(cell), cell).first->second;
+        } catch (const SceneRefused& error) {
+            refused = std::string("not run: ") + error.what();
+        }
+    }
+    not_run = refused;
+    return nullptr;
+}
+
+Specimen* SpecimenStore::get(const BenchCell& cell, std::string& not_run) {
+    const auto found = specimens_.find(name_of(cell));
+    if (found != specimens_.end()) return &found->second;
     if (balls_ + cell.scene.balls > kMostBallsKept) {
         specimens_.clear();
         balls_ = 0;
     }
+    Specimen* const specimen = make(cell, not_run);
+    if (specimen == nullptr) return nullptr;
     balls_ += cell.scene.balls;
-    Specimen& specimen = specimens_.emplace(name, cell).first->second;
     if (find_engine(cell.engine)->is_floor) return specimen;
     const double speed = cell.scene.radii_per_tick;
     const auto [head_on, is_new] = head_on_.try_emplace({cell.engine, speed});
     if (is_new) head_on->second = shoot_head_on(cell.engine, 2.0 * speed, kHeadOnPairs);
-    specimen.set(head_on->second);
+    specimen->set(head_on->second);
     return specimen;
 }
 

@@ -31,14 +31,19 @@ inline constexpr double kEnergyLost = 1e300;
 
 struct Laws {
     double energy_error = 0.0;  // relative, >= 0, after `ticks` ticks from the start
-    std::size_t ticks = 0;
+    std::size_t ticks = 0;      // warm_up_ticks
     // At the speed of the scene: each ball at the root of the mean square. Empty for a floor.
     std::optional<HeadOn> head_on;
 };
 
+// After how many ticks energy is judged and timing begins, for every engine alike: a second of the
+// scene. Large and fast scenes have less, so that the slowest engine takes a few seconds, but 5
+// ticks at least, and as many as move a ball by a radius.
+std::size_t warm_up_ticks(const BenchScene& scene);
+
 class Specimen {
   public:
-    // Advances the scene by a second, or as much of it as a few seconds of the machine allow.
+    // Throws SceneRefused.
     explicit Specimen(const BenchCell& cell);
 
     Engine& engine() { return *engine_; }
@@ -50,16 +55,20 @@ class Specimen {
     Laws laws_;
 };
 
-// Specimens by cell, so that whoever measures one again need not warm it up again. What was used
-// before others is forgotten when it becomes much.
+// Specimens by cell, so that whoever measures one again need not warm it up again. When their balls
+// become too many, all are forgotten.
 class SpecimenStore {
   public:
-    // The cell is one that is run (reason_not_to_run). Valid until the next call.
-    Specimen& get(const BenchCell& cell);
+    // The cell is one that is run (reason_not_to_run). Valid until the next call. Null, and
+    // `not_run` says why, when its scene cannot be made.
+    Specimen* get(const BenchCell& cell, std::string& not_run);
 
   private:
+    Specimen* make(const BenchCell& cell, std::string& not_run);
+
     std::map<std::string, Specimen> specimens_;
     std::map<std::pair<std::string, double>, HeadOn> head_on_;  // by engine and speed
+    std::map<std::string, std::string> refused_;                // why, by the scene's text
     std::size_t balls_ = 0;
 };
 

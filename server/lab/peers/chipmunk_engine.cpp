@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chipmunk/chipmunk.h>
+#include <cstdio>
+#include <fcntl.h>
 #include <limits>
+#include <unistd.h>
 #include <vector>
 
 namespace fts::lab {
@@ -21,6 +24,39 @@ cpVect theirs(const Vec2d& ours) {
     return {ours.x(), ours.y()};
 }
 
+// While it lives, what is printed goes nowhere.
+class QuietStdout {
+  public:
+    QuietStdout() : kept_(dup(STDOUT_FILENO)) {
+        std::fflush(stdout);
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        if (kept_ >= 0 && nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
+        if (nowhere >= 0) close(nowhere);
+    }
+    ~QuietStdout() {
+        std::fflush(stdout);
+        if (kept_ < 0) return;
+        dup2(kept_, STDOUT_FILENO);
+        close(kept_);
+    }
+    QuietStdout(const QuietStdout&) = delete;
+    QuietStdout& operator=(const QuietStdout&) = delete;
+
+  private:
+    int kept_;
+};
+
+// A library with its assertions compiled in says so on stdout at its first space, where results may
+// go.
+cpSpace* new_space() {
+    [[maybe_unused]] static const bool kHasSpoken = [] {
+        const QuietStdout quiet;
+        cpSpaceFree(cpSpaceNew());
+        return true;
+    }();
+    return cpSpaceNew();
+}
+
 struct SpaceDeleter {
     void operator()(cpSpace* space) const { cpSpaceFree(space); }
 };
@@ -28,7 +64,7 @@ struct SpaceDeleter {
 class ChipmunkEngine : public Engine {
   public:
     ChipmunkEngine(const Scene& scene, double tick_s, ChipmunkIndex index)
-        : space_(cpSpaceNew()), tick_s_(tick_s) {
+        : space_(new_space()), tick_s_(tick_s) {
         double largest_m = 0.0, smallest_m = std::numeric_limits<double>::infinity();
         for (const BodyDef& body : scene.bodies) {
             largest_m = std::max(largest_m, body.radius_m);
