@@ -3,9 +3,7 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -14,7 +12,6 @@
 #include <CLI/CLI.hpp>
 
 #include "server/lab/progress_bar.h"
-#include "server/lab/svg_plot.h"
 #include "tests/accuracy/cells.h"
 #include "tests/accuracy/figures.h"
 
@@ -25,8 +22,7 @@ namespace fs = std::filesystem;
 
 struct Options {
     std::string cells = "build/accuracy";
-    std::string page = "docs/accuracy.md";
-    std::string figures = "docs/figures";
+    PageFiles to = {"docs/accuracy.md", "docs/figures"};
     unsigned threads = 2;
 };
 
@@ -63,37 +59,9 @@ bool measure(const std::vector<Cell>& cells, unsigned threads, const char* what,
     return lab::nobody_interrupted();
 }
 
-bool write_file(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) std::fprintf(stderr, "accuracy-study: cannot write '%s'\n", file.c_str());
-    return static_cast<bool>(out);
-}
-
-bool write_page(const Options& options, const CellStore& store) {
-    std::error_code failure;
-    fs::create_directories(options.figures, failure);
-    for (const Figure& figure : figures_of(store)) {
-        if (!write_file(fs::path(options.figures) / figure.file, lab::render_svg(figure.plot))) {
-            return false;
-        }
-    }
-    std::ifstream in(options.page, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) {
-        std::fprintf(stderr, "accuracy-study: cannot read '%s'; name the page (--page)\n",
-                     options.page.c_str());
-        return false;
-    }
-    std::string error;
-    const std::string page = with_tables(text.str(), tables_of(store), error);
-    if (!error.empty()) {
-        std::fprintf(stderr, "accuracy-study: %s: %s\n", options.page.c_str(), error.c_str());
-        return false;
-    }
-    return write_file(options.page, page);
+int complain_about(const std::string& what) {
+    std::fprintf(stderr, "accuracy-study: %s\n", what.c_str());
+    return 1;
 }
 
 int run(const Options& options) {
@@ -101,10 +69,7 @@ int run(const Options& options) {
     fs::create_directories(options.cells, failure);
     std::string error;
     CellStore store(fs::path(options.cells) / "cells.jsonl", error);
-    if (!error.empty()) {
-        std::fprintf(stderr, "accuracy-study: %s\n", error.c_str());
-        return 1;
-    }
+    if (!error.empty()) return complain_about(error);
     const StudyCells all = all_cells();
     const auto accuracy = missing(all.accuracy, store), cost = missing(all.cost, store);
     const std::size_t of = all.accuracy.size() + all.cost.size();
@@ -121,8 +86,10 @@ int run(const Options& options) {
                     of - left, of);
         return 130;
     }
-    if (!write_page(options, store)) return 1;
-    std::printf("wrote %s and the figures in %s\n", options.page.c_str(), options.figures.c_str());
+    error = write_page(options.to, figures_of(store), tables_of(store));
+    if (!error.empty()) return complain_about(error);
+    std::printf("wrote %s and the figures in %s\n", options.to.page.c_str(),
+                options.to.figures.c_str());
     return 0;
 }
 
@@ -134,9 +101,9 @@ int main(int argc, char** argv) {
     CLI::App app("Measures the trade of speed for accuracy and writes the page about it");
     app.add_option("--cells", options.cells, "Folder of what is measured already")
         ->capture_default_str();
-    app.add_option("--page", options.page, "The page whose tables are written")
+    app.add_option("--page", options.to.page, "The page whose tables are written")
         ->capture_default_str();
-    app.add_option("--figures", options.figures, "Folder of the figures")->capture_default_str();
+    app.add_option("--figures", options.to.figures, "Folder of the figures")->capture_default_str();
     app.add_option("--threads", options.threads, "For all but costs, which are measured alone")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();

@@ -141,19 +141,4 @@ std::vector<Table> tables_of(const CellStore& cells) {
             samples_table(cells)};
 }
 
-std::string with_tables(std::string page, const std::vector<Table>& tables, std::string& error) {
-    for (const Table& table : tables) {
-        const std::string begin = "<!-- table " + table.name + " -->\n";
-        const std::string end = "<!-- end " + table.name + " -->";
-        const std::size_t from = page.find(begin);
-        const std::size_t to = from == std::string::npos ? from : page.find(end, from);
-        if (to == std::string::npos) {
-            error = "the page has no '<!-- table " + table.name + " -->' and '" + end + "'";
-            return page;
-        }
-        page.replace(from + begin.size(), to - from - begin.size(), "\n" + table.markdown + "\n");
-    }
-    return page;
-}
-
 }  // namespace fts::accuracy

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/accuracy/figures.h"
+#include "tests/accuracy/page.h"
 #include "tests/bench/kept_results.h"
 
 namespace fts::bench {

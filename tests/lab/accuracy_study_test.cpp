@@ -86,6 +86,20 @@ TEST(AccuracyPage, is_written_between_its_markers_only) {
     EXPECT_THAT(error, HasSubstr("two"));
 }
 
+TEST(AccuracyPage, is_written_with_its_figures_or_says_why_not) {
+    const Folder folder;
+    const PageFiles files = {folder.path() / "page.md", folder.path() / "figures"};
+    const std::vector<Figure> figures = {{"one.svg", {}}};
+    EXPECT_THAT(write_page(files, figures, {{"one", "| new |\n"}}), HasSubstr("--page"));
+    std::ofstream(files.page) << "<!-- table one -->\n<!-- end one -->\n";
+    EXPECT_THAT(write_page(files, figures, {{"two", ""}}), HasSubstr("page.md: "));
+    EXPECT_EQ(write_page(files, figures, {{"one", "| new |\n"}}), "");
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures" / "one.svg"));
+    std::string page;
+    std::getline(std::ifstream(files.page), page, '\0');
+    EXPECT_EQ(page, "<!-- table one -->\n\n| new |\n\n<!-- end one -->\n");
+}
+
 TEST(AccuracyPage, has_figures_even_before_anything_is_measured) {
     const Folder folder;
     std::string error;
