@@ -8,6 +8,7 @@
 namespace fts::physics {
 namespace {
 
+// The oracle of all others.
 template <typename Value>
 struct PlainLanes {
     using Scalar = Value;
@@ -67,81 +68,92 @@ struct PlainLanes {
 
 #if defined(__SSE2__)
 
-struct Sse2Doubles : PlainLanes<double> {
-    using Greatest = __m128d;
-    static constexpr bool kHasSse2 = true;
+// Four doubles are two vectors.
+struct Sse2Doubles {
+    using Scalar = double;
+    struct Vector {
+        __m128d low, high;
+    };
+    static constexpr std::uint32_t kWidth = 4;
 
-    static std::uint32_t near(const double* x, const double* y, double at_x, double at_y,
-                              double reach_squared) {
-        const auto two = [&](std::uint32_t k) {
-            const __m128d dx = _mm_sub_pd(_mm_loadu_pd(x + k), _mm_set1_pd(at_x));
-            const __m128d dy = _mm_sub_pd(_mm_loadu_pd(y + k), _mm_set1_pd(at_y));
-            const __m128d squared = _mm_add_pd(_mm_mul_pd(dx, dx), _mm_mul_pd(dy, dy));
-            const __m128d is_near = _mm_cmplt_pd(squared, _mm_set1_pd(reach_squared));
-            return static_cast<std::uint32_t>(_mm_movemask_pd(is_near));
-        };
-        return two(0) | two(2) << 2U;
+    static Vector load(const double* from) { return {_mm_loadu_pd(from), _mm_loadu_pd(from + 2)}; }
+    static void store(double* to, Vector a) {
+        _mm_storeu_pd(to, a.low);
+        _mm_storeu_pd(to + 2, a.high);
     }
-    static std::uint32_t within(const double* x, const double* y, const double* radius, double at_x,
-                                double at_y, double at_radius) {
-        const auto two = [&](std::uint32_t k) {
-            const __m128d dx = _mm_sub_pd(_mm_loadu_pd(x + k), _mm_set1_pd(at_x));
-            const __m128d dy = _mm_sub_pd(_mm_loadu_pd(y + k), _mm_set1_pd(at_y));
-            const __m128d reach = _mm_add_pd(_mm_loadu_pd(radius + k), _mm_set1_pd(at_radius));
-            const __m128d squared = _mm_add_pd(_mm_mul_pd(dx, dx), _mm_mul_pd(dy, dy));
-            const __m128d is_near = _mm_cmplt_pd(squared, _mm_mul_pd(reach, reach));
-            return static_cast<std::uint32_t>(_mm_movemask_pd(is_near));
-        };
-        return two(0) | two(2) << 2U;
+    static Vector all(double value) { return {_mm_set1_pd(value), _mm_set1_pd(value)}; }
+    static Vector add(Vector a, Vector b) {
+        return {_mm_add_pd(a.low, b.low), _mm_add_pd(a.high, b.high)};
     }
-    static std::uint32_t outside(const double* x, const double* y, const Range2<double>& range) {
-        const auto inside = [](const double* at, double low, double high) {
-            const __m128d values = _mm_loadu_pd(at);
-            return _mm_and_pd(_mm_cmpge_pd(values, _mm_set1_pd(low)),
-                              _mm_cmple_pd(values, _mm_set1_pd(high)));
-        };
-        const auto two = [&](std::uint32_t k) {
-            const __m128d both = _mm_and_pd(inside(x + k, range.low_x_m, range.high_x_m),
-                                            inside(y + k, range.low_y_m, range.high_y_m));
-            return static_cast<std::uint32_t>(_mm_movemask_pd(both));
-        };
-        return (two(0) | two(2) << 2U) ^ 15U;
+    static Vector sub(Vector a, Vector b) {
+        return {_mm_sub_pd(a.low, b.low), _mm_sub_pd(a.high, b.high)};
     }
-    static void move(double* x, double* y, const double* vx, const double* vy, double span,
-                     Greatest& greatest) {
-        const __m128d all_span = _mm_set1_pd(span);
-        for (std::uint32_t k = 0; k < kLanes; k += 2) {
-            const __m128d u = _mm_loadu_pd(vx + k), v = _mm_loadu_pd(vy + k);
-            _mm_storeu_pd(x + k, _mm_add_pd(_mm_loadu_pd(x + k), _mm_mul_pd(u, all_span)));
-            _mm_storeu_pd(y + k, _mm_add_pd(_mm_loadu_pd(y + k), _mm_mul_pd(v, all_span)));
-            greatest = _mm_max_pd(greatest, _mm_add_pd(_mm_mul_pd(u, u), _mm_mul_pd(v, v)));
-        }
+    static Vector mul(Vector a, Vector b) {
+        return {_mm_mul_pd(a.low, b.low), _mm_mul_pd(a.high, b.high)};
     }
-    static double greatest_of(const Greatest& greatest) {
-        const __m128d both = _mm_max_sd(greatest, _mm_unpackhi_pd(greatest, greatest));
-        return _mm_cvtsd_f64(both);
+    static Vector max(Vector a, Vector b) {
+        return {_mm_max_pd(a.low, b.low), _mm_max_pd(a.high, b.high)};
+    }
+    static std::uint32_t bits_of(__m128d low, __m128d high) {
+        return static_cast<std::uint32_t>(_mm_movemask_pd(low) | _mm_movemask_pd(high) << 2);
+    }
+    static std::uint32_t below(Vector a, Vector b) {
+        return bits_of(_mm_cmplt_pd(a.low, b.low), _mm_cmplt_pd(a.high, b.high));
+    }
+    static std::uint32_t inside(Vector x, Vector y, const Range2<double>& range) {
+        const auto within = [](__m128d a, double low, double high) {
+            return _mm_and_pd(_mm_cmpge_pd(a, _mm_set1_pd(low)),
+                              _mm_cmple_pd(a, _mm_set1_pd(high)));
+        };
+        const auto two = [&](__m128d at_x, __m128d at_y) {
+            return _mm_and_pd(within(at_x, range.low_x_m, range.high_x_m),
+                              within(at_y, range.low_y_m, range.high_y_m));
+        };
+        return bits_of(two(x.low, y.low), two(x.high, y.high));
+    }
+    static std::uint32_t take(std::uint32_t bits, const std::uint32_t* from, std::uint32_t* to) {
+        return PlainLanes<double>::take(bits, from, to);
+    }
+    static void fill(std::uint32_t value, std::uint32_t* to) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_set1_epi32(static_cast<int>(value)));
+    }
+    static double greatest_of(Vector a) {
+        const __m128d two = _mm_max_pd(a.low, a.high);
+        return _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)));
     }
 };
 
-struct Sse2Floats : PlainLanes<float> {
-    static constexpr bool kHasSse2 = true;
+struct Sse2Floats {
+    using Scalar = float;
+    using Vector = __m128;
+    static constexpr std::uint32_t kWidth = 4;
 
-    static std::uint32_t near(const float* x, const float* y, float at_x, float at_y,
-                              float reach_squared) {
-        const __m128 dx = _mm_sub_ps(_mm_loadu_ps(x), _mm_set1_ps(at_x));
-        const __m128 dy = _mm_sub_ps(_mm_loadu_ps(y), _mm_set1_ps(at_y));
-        const __m128 squared = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy));
-        const __m128 is_near = _mm_cmplt_ps(squared, _mm_set1_ps(reach_squared));
-        return static_cast<std::uint32_t>(_mm_movemask_ps(is_near));
+    static Vector load(const float* from) { return _mm_loadu_ps(from); }
+    static void store(float* to, Vector a) { _mm_storeu_ps(to, a); }
+    static Vector all(float value) { return _mm_set1_ps(value); }
+    static Vector add(Vector a, Vector b) { return _mm_add_ps(a, b); }
+    static Vector sub(Vector a, Vector b) { return _mm_sub_ps(a, b); }
+    static Vector mul(Vector a, Vector b) { return _mm_mul_ps(a, b); }
+    static Vector max(Vector a, Vector b) { return _mm_max_ps(a, b); }
+    static std::uint32_t below(Vector a, Vector b) {
+        return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmplt_ps(a, b)));
     }
-    static std::uint32_t within(const float* x, const float* y, const float* radius, float at_x,
-                                float at_y, float at_radius) {
-        const __m128 dx = _mm_sub_ps(_mm_loadu_ps(x), _mm_set1_ps(at_x));
-        const __m128 dy = _mm_sub_ps(_mm_loadu_ps(y), _mm_set1_ps(at_y));
-        const __m128 reach = _mm_add_ps(_mm_loadu_ps(radius), _mm_set1_ps(at_radius));
-        const __m128 squared = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy));
-        const __m128 is_near = _mm_cmplt_ps(squared, _mm_mul_ps(reach, reach));
-        return static_cast<std::uint32_t>(_mm_movemask_ps(is_near));
+    static std::uint32_t inside(Vector x, Vector y, const Range2<float>& range) {
+        const auto within = [](Vector a, float low, float high) {
+            return _mm_and_ps(_mm_cmpge_ps(a, all(low)), _mm_cmple_ps(a, all(high)));
+        };
+        return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_and_ps(
+            within(x, range.low_x_m, range.high_x_m), within(y, range.low_y_m, range.high_y_m))));
+    }
+    static std::uint32_t take(std::uint32_t bits, const std::uint32_t* from, std::uint32_t* to) {
+        return PlainLanes<float>::take(bits, from, to);
+    }
+    static void fill(std::uint32_t value, std::uint32_t* to) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_set1_epi32(static_cast<int>(value)));
+    }
+    static float greatest_of(Vector a) {
+        const __m128 two = _mm_max_ps(a, _mm_movehl_ps(a, a));
+        return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
     }
 };
 
@@ -154,7 +166,7 @@ template <>
 struct KernelsByLevel<double> {
     static constexpr const CrowdKernels<double>* kPlain = &kKernelsOf<PlainLanes<double>>;
 #if defined(__x86_64__)
-    static constexpr const CrowdKernels<double>* kSse2 = &kKernelsOf<Sse2Doubles>;
+    static constexpr const CrowdKernels<double>* kSse2 = &kKernelsOf<PackLanes<Sse2Doubles>>;
     static constexpr const CrowdKernels<double>* kAvx2 = &kAvx2OfDoubles;
     static constexpr const CrowdKernels<double>* kAvx512 = &kAvx512OfDoubles;
 #endif
@@ -164,7 +176,7 @@ template <>
 struct KernelsByLevel<float> {
     static constexpr const CrowdKernels<float>* kPlain = &kKernelsOf<PlainLanes<float>>;
 #if defined(__x86_64__)
-    static constexpr const CrowdKernels<float>* kSse2 = &kKernelsOf<Sse2Floats>;
+    static constexpr const CrowdKernels<float>* kSse2 = &kKernelsOf<PackLanes<Sse2Floats>>;
     static constexpr const CrowdKernels<float>* kAvx2 = &kAvx2OfFloats;
     static constexpr const CrowdKernels<float>* kAvx512 = &kAvx512OfFloats;
 #endif

@@ -36,27 +36,26 @@ std::uint32_t take_of_four(std::uint32_t bits, const std::uint32_t* from, std::u
 
 struct Doubles {
     using Scalar = double;
-    using Greatest = __m256d;
-    static constexpr std::uint32_t kLanes = 4;
-    static constexpr bool kHasSse2 = true;
+    using Vector = __m256d;
+    static constexpr std::uint32_t kWidth = 4;
 
-    static __m256d squared(const double* x, const double* y, double at_x, double at_y) {
-        const __m256d dx = _mm256_sub_pd(_mm256_loadu_pd(x), _mm256_set1_pd(at_x));
-        const __m256d dy = _mm256_sub_pd(_mm256_loadu_pd(y), _mm256_set1_pd(at_y));
-        return _mm256_add_pd(_mm256_mul_pd(dx, dx), _mm256_mul_pd(dy, dy));
+    static Vector load(const double* from) { return _mm256_loadu_pd(from); }
+    static void store(double* to, Vector a) { _mm256_storeu_pd(to, a); }
+    static Vector all(double value) { return _mm256_set1_pd(value); }
+    static Vector add(Vector a, Vector b) { return _mm256_add_pd(a, b); }
+    static Vector sub(Vector a, Vector b) { return _mm256_sub_pd(a, b); }
+    static Vector mul(Vector a, Vector b) { return _mm256_mul_pd(a, b); }
+    static Vector max(Vector a, Vector b) { return _mm256_max_pd(a, b); }
+    static std::uint32_t below(Vector a, Vector b) {
+        return static_cast<std::uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ)));
     }
-    static std::uint32_t below(__m256d value, __m256d limit) {
-        return static_cast<std::uint32_t>(
-            _mm256_movemask_pd(_mm256_cmp_pd(value, limit, _CMP_LT_OQ)));
-    }
-    static std::uint32_t near(const double* x, const double* y, double at_x, double at_y,
-                              double reach_squared) {
-        return below(squared(x, y, at_x, at_y), _mm256_set1_pd(reach_squared));
-    }
-    static std::uint32_t within(const double* x, const double* y, const double* radius, double at_x,
-                                double at_y, double at_radius) {
-        const __m256d reach = _mm256_add_pd(_mm256_loadu_pd(radius), _mm256_set1_pd(at_radius));
-        return below(squared(x, y, at_x, at_y), _mm256_mul_pd(reach, reach));
+    static std::uint32_t inside(Vector x, Vector y, const Range2<double>& range) {
+        const auto within = [](Vector a, double low, double high) {
+            return _mm256_and_pd(_mm256_cmp_pd(a, all(low), _CMP_GE_OQ),
+                                 _mm256_cmp_pd(a, all(high), _CMP_LE_OQ));
+        };
+        return static_cast<std::uint32_t>(_mm256_movemask_pd(_mm256_and_pd(
+            within(x, range.low_x_m, range.high_x_m), within(y, range.low_y_m, range.high_y_m))));
     }
     static std::uint32_t take(std::uint32_t bits, const std::uint32_t* from, std::uint32_t* to) {
         return take_of_four(bits, from, to);
@@ -64,57 +63,34 @@ struct Doubles {
     static void fill(std::uint32_t value, std::uint32_t* to) {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_set1_epi32(static_cast<int>(value)));
     }
-    static std::uint32_t outside(const double* x, const double* y, const Range2<double>& range) {
-        const auto inside = [](const double* at, double low, double high) {
-            const __m256d values = _mm256_loadu_pd(at);
-            return _mm256_and_pd(_mm256_cmp_pd(values, _mm256_set1_pd(low), _CMP_GE_OQ),
-                                 _mm256_cmp_pd(values, _mm256_set1_pd(high), _CMP_LE_OQ));
-        };
-        const __m256d both = _mm256_and_pd(inside(x, range.low_x_m, range.high_x_m),
-                                           inside(y, range.low_y_m, range.high_y_m));
-        return static_cast<std::uint32_t>(_mm256_movemask_pd(both)) ^ 15U;
-    }
-    static void move(double* x, double* y, const double* vx, const double* vy, double span,
-                     Greatest& greatest) {
-        const __m256d u = _mm256_loadu_pd(vx), v = _mm256_loadu_pd(vy);
-        const __m256d all_span = _mm256_set1_pd(span);
-        const __m256d speed = _mm256_add_pd(_mm256_mul_pd(u, u), _mm256_mul_pd(v, v));
-        _mm256_storeu_pd(x, _mm256_add_pd(_mm256_loadu_pd(x), _mm256_mul_pd(u, all_span)));
-        _mm256_storeu_pd(y, _mm256_add_pd(_mm256_loadu_pd(y), _mm256_mul_pd(v, all_span)));
-        greatest = _mm256_max_pd(greatest, speed);
-    }
-    static double greatest_of(const Greatest& greatest) {
-        alignas(32) double all[4];
-        _mm256_store_pd(all, greatest);
-        double most = all[0];
-        for (const double one : all) most = most < one ? one : most;
-        return most;
+    static double greatest_of(Vector a) {
+        const __m128d two = _mm_max_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
+        return _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)));
     }
 };
 
 struct Floats {
     using Scalar = float;
-    using Greatest = __m256;
-    static constexpr std::uint32_t kLanes = 8;
-    static constexpr bool kHasSse2 = true;
+    using Vector = __m256;
+    static constexpr std::uint32_t kWidth = 8;
 
-    static __m256 squared(const float* x, const float* y, float at_x, float at_y) {
-        const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(x), _mm256_set1_ps(at_x));
-        const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(y), _mm256_set1_ps(at_y));
-        return _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy));
+    static Vector load(const float* from) { return _mm256_loadu_ps(from); }
+    static void store(float* to, Vector a) { _mm256_storeu_ps(to, a); }
+    static Vector all(float value) { return _mm256_set1_ps(value); }
+    static Vector add(Vector a, Vector b) { return _mm256_add_ps(a, b); }
+    static Vector sub(Vector a, Vector b) { return _mm256_sub_ps(a, b); }
+    static Vector mul(Vector a, Vector b) { return _mm256_mul_ps(a, b); }
+    static Vector max(Vector a, Vector b) { return _mm256_max_ps(a, b); }
+    static std::uint32_t below(Vector a, Vector b) {
+        return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
     }
-    static std::uint32_t below(__m256 value, __m256 limit) {
-        return static_cast<std::uint32_t>(
-            _mm256_movemask_ps(_mm256_cmp_ps(value, limit, _CMP_LT_OQ)));
-    }
-    static std::uint32_t near(const float* x, const float* y, float at_x, float at_y,
-                              float reach_squared) {
-        return below(squared(x, y, at_x, at_y), _mm256_set1_ps(reach_squared));
-    }
-    static std::uint32_t within(const float* x, const float* y, const float* radius, float at_x,
-                                float at_y, float at_radius) {
-        const __m256 reach = _mm256_add_ps(_mm256_loadu_ps(radius), _mm256_set1_ps(at_radius));
-        return below(squared(x, y, at_x, at_y), _mm256_mul_ps(reach, reach));
+    static std::uint32_t inside(Vector x, Vector y, const Range2<float>& range) {
+        const auto within = [](Vector a, float low, float high) {
+            return _mm256_and_ps(_mm256_cmp_ps(a, all(low), _CMP_GE_OQ),
+                                 _mm256_cmp_ps(a, all(high), _CMP_LE_OQ));
+        };
+        return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_and_ps(
+            within(x, range.low_x_m, range.high_x_m), within(y, range.low_y_m, range.high_y_m))));
     }
     static std::uint32_t take(std::uint32_t bits, const std::uint32_t* from, std::uint32_t* to) {
         const std::uint32_t taken = take_of_four(bits & 15U, from, to);
@@ -124,37 +100,18 @@ struct Floats {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                             _mm256_set1_epi32(static_cast<int>(value)));
     }
-    static std::uint32_t outside(const float* x, const float* y, const Range2<float>& range) {
-        const auto inside = [](const float* at, float low, float high) {
-            const __m256 values = _mm256_loadu_ps(at);
-            return _mm256_and_ps(_mm256_cmp_ps(values, _mm256_set1_ps(low), _CMP_GE_OQ),
-                                 _mm256_cmp_ps(values, _mm256_set1_ps(high), _CMP_LE_OQ));
-        };
-        const __m256 both = _mm256_and_ps(inside(x, range.low_x_m, range.high_x_m),
-                                          inside(y, range.low_y_m, range.high_y_m));
-        return static_cast<std::uint32_t>(_mm256_movemask_ps(both)) ^ 255U;
-    }
-    static void move(float* x, float* y, const float* vx, const float* vy, float span,
-                     Greatest& greatest) {
-        const __m256 u = _mm256_loadu_ps(vx), v = _mm256_loadu_ps(vy);
-        const __m256 all_span = _mm256_set1_ps(span);
-        const __m256 speed = _mm256_add_ps(_mm256_mul_ps(u, u), _mm256_mul_ps(v, v));
-        _mm256_storeu_ps(x, _mm256_add_ps(_mm256_loadu_ps(x), _mm256_mul_ps(u, all_span)));
-        _mm256_storeu_ps(y, _mm256_add_ps(_mm256_loadu_ps(y), _mm256_mul_ps(v, all_span)));
-        greatest = _mm256_max_ps(greatest, speed);
-    }
-    static float greatest_of(const Greatest& greatest) {
-        alignas(32) float all[8];
-        _mm256_store_ps(all, greatest);
-        float most = all[0];
-        for (const float one : all) most = most < one ? one : most;
+    static float greatest_of(Vector a) {
+        alignas(32) float each[8];
+        _mm256_store_ps(each, a);
+        float most = each[0];
+        for (const float one : each) most = most < one ? one : most;
         return most;
     }
 };
 
 }  // namespace
 
-const CrowdKernels<double> kAvx2OfDoubles = kKernelsOf<Doubles>;
-const CrowdKernels<float> kAvx2OfFloats = kKernelsOf<Floats>;
+const CrowdKernels<double> kAvx2OfDoubles = kKernelsOf<PackLanes<Doubles>>;
+const CrowdKernels<float> kAvx2OfFloats = kKernelsOf<PackLanes<Floats>>;
 
 }  // namespace fts::physics

@@ -9,6 +9,12 @@
 //     Lanes::fill(value, to)        kLanes of them
 //     Lanes::outside(x, y, range)   bit k: (x[k], y[k]) is not inside
 //     Lanes::move(...)              kLanes discs; keeps the greatest squares of speeds
+//
+// PackLanes is that of a `Pack`, local to its source likewise, which has
+//
+//     Scalar, Vector of kWidth of them, load, store, all, add, sub, mul, max; take and fill as
+//     above below(a, b)           bit k: a[k] < b[k] inside(x, y, range)   bit k: (x[k], y[k]) is
+//     inside greatest_of(a)        of its numbers
 #pragma once
 
 #include <cstddef>
@@ -23,6 +29,45 @@
 #endif
 
 namespace fts::physics {
+
+template <typename Pack>
+struct PackLanes {
+    using Scalar = typename Pack::Scalar;
+    using Vector = typename Pack::Vector;
+    using Greatest = Vector;
+    static constexpr std::uint32_t kLanes = Pack::kWidth;
+    static constexpr bool kHasSse2 = true;
+
+    static Vector squared(const Scalar* x, const Scalar* y, Scalar at_x, Scalar at_y) {
+        const Vector dx = Pack::sub(Pack::load(x), Pack::all(at_x));
+        const Vector dy = Pack::sub(Pack::load(y), Pack::all(at_y));
+        return Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy));
+    }
+    static std::uint32_t near(const Scalar* x, const Scalar* y, Scalar at_x, Scalar at_y,
+                              Scalar reach_squared) {
+        return Pack::below(squared(x, y, at_x, at_y), Pack::all(reach_squared));
+    }
+    static std::uint32_t within(const Scalar* x, const Scalar* y, const Scalar* radius, Scalar at_x,
+                                Scalar at_y, Scalar at_radius) {
+        const Vector reach = Pack::add(Pack::load(radius), Pack::all(at_radius));
+        return Pack::below(squared(x, y, at_x, at_y), Pack::mul(reach, reach));
+    }
+    static std::uint32_t take(std::uint32_t bits, const std::uint32_t* from, std::uint32_t* to) {
+        return Pack::take(bits, from, to);
+    }
+    static void fill(std::uint32_t value, std::uint32_t* to) { Pack::fill(value, to); }
+    static std::uint32_t outside(const Scalar* x, const Scalar* y, const Range2<Scalar>& range) {
+        return Pack::inside(Pack::load(x), Pack::load(y), range) ^ ((1U << kLanes) - 1U);
+    }
+    static void move(Scalar* x, Scalar* y, const Scalar* vx, const Scalar* vy, Scalar span,
+                     Greatest& greatest) {
+        const Vector u = Pack::load(vx), v = Pack::load(vy), all_span = Pack::all(span);
+        Pack::store(x, Pack::add(Pack::load(x), Pack::mul(u, all_span)));
+        Pack::store(y, Pack::add(Pack::load(y), Pack::mul(v, all_span)));
+        greatest = Pack::max(greatest, Pack::add(Pack::mul(u, u), Pack::mul(v, v)));
+    }
+    static Scalar greatest_of(const Greatest& greatest) { return Pack::greatest_of(greatest); }
+};
 
 template <typename Lanes>
 typename Lanes::Scalar advance_lanes(typename Lanes::Scalar* x_m, typename Lanes::Scalar* y_m,

@@ -46,7 +46,7 @@ struct SweptKernels {
         const std::uint32_t rows = search.rows, width = lanes.width;
         const std::uint32_t* const first_path = lanes.first;
         const Vector limit = Pack::all(search.limit);
-        const FoundPairs* const full = found + (room - most_found(lanes.paths, rows));
+        const FoundPairs* const full = found + (room - search.most_of_one);
         FoundPairs* out = found;
         std::uint32_t i = cursor.path, row = cursor.row;
         for (; i < lanes.paths && out <= full; ++row) {

@@ -43,6 +43,7 @@ struct PairSearch {
     float reach;
     std::uint32_t rows;
     float limit;  // of the square of the distance; without the radii unless all are equal
+    std::size_t most_of_one;  // most_found
 };
 
 // How far a search for pairs has come: the next path, and its row.

@@ -1,6 +1,4 @@
-// Compiled for AVX2, and called only where there is such.
-#if defined(__x86_64__)
-
+// Compiled with -mavx2 -mpopcnt.
 #include <immintrin.h>
 
 #include "common/physics/swept_kernels.h"
@@ -29,5 +27,3 @@ const LaneKernels& lane_kernels_avx2(bool equal_radii) {
 }
 
 }  // namespace fts::physics
-
-#endif

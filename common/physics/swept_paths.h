@@ -141,10 +141,11 @@ template <typename Scalar>
 template <typename Visit>
 void SweptPaths<Scalar>::for_each_pair(Visit&& visit) {
     const PathLanes all = lanes();
+    const PairSearch search = {reach_, margin_, limit_, most_found(all.paths, margin_)};
     PairCursor cursor;
     while (cursor.path < all.paths) {
-        const std::size_t count = kernels_->find_pairs(all, {reach_, margin_, limit_}, cursor,
-                                                       found_.data(), found_.size());
+        const std::size_t count =
+            kernels_->find_pairs(all, search, cursor, found_.data(), found_.size());
         for (std::size_t i = 0; i < count; ++i) {
             const auto [path, first, bits] = found_[i];
             for (std::uint32_t left = bits; left != 0; left &= left - 1) {

@@ -259,10 +259,11 @@ void note(void* to, std::uint32_t path) {
 
 Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
     Found all;
-    std::vector<FoundPairs> room(most_found(lanes.paths, 1) + 3);
+    const PairSearch search = {0.9F, 1, lanes.radius ? 0.01F : 0.1F, most_found(lanes.paths, 1)};
+    std::vector<FoundPairs> room(search.most_of_one + 3);
     for (PairCursor cursor; cursor.path < lanes.paths;) {
-        const std::size_t count = kernels.find_pairs(lanes, {0.9F, 1, lanes.radius ? 0.01F : 0.1F},
-                                                     cursor, room.data(), room.size());
+        const std::size_t count =
+            kernels.find_pairs(lanes, search, cursor, room.data(), room.size());
         for (std::size_t i = 0; i < count; ++i) {
             for (std::uint32_t k = 0; k < kMostLanes; ++k) {
                 if ((room[i].bits >> k & 1) != 0) {
