@@ -41,8 +41,9 @@ inline constexpr double kRefusalLingersS = 1.0;  // so that the reason arrives b
 inline constexpr std::size_t kMaxQueuedInputs = 8;
 // An input further ahead than this is not one a client can have come to: a minute of ticks.
 inline constexpr std::uint32_t kMaxInputLead = 60 * game::kTickRateHz;
-// When the queue has not been empty for this long, one input is skipped to shorten the delay.
-inline constexpr int kInputSlackWindowTicks = game::kTickRateHz;
+// When the queue has had inputs to spare for this long, one is skipped to shorten the delay. Long
+// enough that a client which sends more slowly to the same end gets there first.
+inline constexpr int kInputSlackWindowTicks = 2 * game::kTickRateHz;
 // A player from whom nothing comes for this long lets go of the controls.
 inline constexpr int kInputSilenceTicks = game::kTickRateHz / 2;
 static_assert(kMaxQueuedInputs <= replication::kMaxInputsPerPacket);

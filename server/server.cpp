@@ -137,12 +137,13 @@ void Server::publish_snapshot(Arena& arena) {
     }
 }
 
-void Server::send_snapshot(Arena& arena, const Session& session) {
+void Server::send_snapshot(Arena& arena, Session& session) {
     const SnapshotFeed::Parts& parts = arena.feed.parts_for(session.held_tick);
     if (parts.empty()) count("snapshot_too_large");
+    const std::uint8_t input_slack = session.inputs.take_slack();
     for (const std::vector<std::uint8_t>& part : parts) {
         const auto bytes = replication::encode(
-            replication::SnapshotPacket{session.inputs.applied_sequence(), part});
+            replication::SnapshotPacket{session.inputs.applied_sequence(), input_slack, part});
         if (!listener_.send_unreliable(session.id, bytes)) count("snapshot_not_sent");
     }
 }

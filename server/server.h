@@ -112,7 +112,7 @@ class Server {
     void deliver(Arena& arena);
     void note_level(const Arena& arena, const Outgoing& outgoing);
     void publish_snapshot(Arena& arena);
-    void send_snapshot(Arena& arena, const Session& session);
+    void send_snapshot(Arena& arena, Session& session);
     void settle_ledger(double now_s);
     void end_overdue_sessions(double now_s);
     void say_what_is_wrong(double now_s);

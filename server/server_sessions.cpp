@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cassert>
 #include <variant>
 
@@ -70,7 +71,8 @@ void Server::on(const net::UnreliablePayload& event, double now_s) {
         return;
     }
     const std::uint64_t left_out_before = session->inputs.left_out();
-    if (!session->inputs.add(*packet)) {
+    const double ticks_ahead = (clock_.next_tick_s() - now_s) / game::kTickDurationS;
+    if (!session->inputs.add(*packet, std::clamp(ticks_ahead, 0.0, 1.0))) {
         count_malformed(*session);
         return;
     }

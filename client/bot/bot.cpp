@@ -158,6 +158,7 @@ void Bot::note_purchase(const replication::PurchaseResult& result) {
 void Bot::note_view(const client::View& view, double now_s) {
     if (view.link.rtt_s > 0.0) tally_.rtt.add(view.link.rtt_s);
     tally_.delay_sum_s += view.link.interpolation_delay_s;
+    tally_.input_slack_sum_s += view.link.input_slack_s;
     ++tally_.delay_samples;
     tally_.coins = view.coins_held;
     if (const replication::PlayerInfo* own = view.own_player()) {

@@ -16,7 +16,7 @@ const std::vector<std::vector<std::string_view>> kTables = {
     {"joined", "knock_offs", "assists", "falls", "coins", "coins_spent", "purchases",
      "levels_cleared", "levels_lost", "hits", "worst_momentum_error", "worst_energy_error"},
     {"snapshots", "missed", "late", "loss", "rtt_mean_ms", "rtt_p99_ms", "delay_mean_ms", "starved",
-     "inputs", "inputs_given_up"},
+     "inputs", "input_slack_ms", "inputs_late", "inputs_given_up"},
 };
 
 std::string cell(const Metric& metric, std::span<const Tally> tallies) {

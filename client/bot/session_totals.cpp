@@ -20,9 +20,11 @@ client::SessionStats sum_of(const client::SessionStats& earlier,
         &Stats::inputs_sent,
         &Stats::inputs_given_up,
         &Stats::inputs_skipped,
+        &Stats::inputs_late,
         &Stats::notices_dropped,
         &Stats::hits_dropped,
         &Stats::delay_limited,
+        &Stats::clock_steps,
     });
     constexpr auto kLinkCounts = std::to_array(
         {&Link::packets_sent, &Link::packets_received, &Link::bytes_sent, &Link::bytes_received});

@@ -70,9 +70,10 @@ double rtt_p99_ms(Tallies tallies) {
     return all_rtt(tallies).quantile_s(0.99) * 1e3;
 }
 
-double delay_mean_ms(Tallies tallies) {
+template <auto SumS>
+double mean_ms(Tallies tallies) {
     const double samples = sum<&Tally::delay_samples>(tallies);
-    return samples > 0.0 ? sum<&Tally::delay_sum_s>(tallies) / samples * 1e3 : 0.0;
+    return samples > 0.0 ? sum<SumS>(tallies) / samples * 1e3 : 0.0;
 }
 
 constexpr auto kMetrics = std::to_array<Metric>({
@@ -91,11 +92,17 @@ constexpr auto kMetrics = std::to_array<Metric>({
     {"loss", "loss %", "share of snapshots that never came at all, 0 to 1", 1, 100.0, loss},
     {"rtt_mean_ms", "RTT ms", "mean of the smoothed round-trip time", 1, 1.0, rtt_mean_ms},
     {"rtt_p99_ms", "p99 ms", "99th percentile of the smoothed round-trip time", 1, 1.0, rtt_p99_ms},
-    {"delay_mean_ms", "delay ms", "mean interpolation delay", 1, 1.0, delay_mean_ms},
+    {"delay_mean_ms", "delay ms", "mean interpolation delay", 1, 1.0, mean_ms<&Tally::delay_sum_s>},
     {"frames", "frames", "views made while playing", 0, 1.0, session_sum<&Stats::frames>},
     {"starved", "starved %", "share of frames with no snapshot to draw towards, 0 to 1", 2, 100.0,
      starved},
+    {"clock_steps", "steps", "times the moment drawn stepped ahead", 0, 1.0,
+     session_sum<&Stats::clock_steps>},
     {"inputs", "inputs", "inputs sent, each once", 0, 1.0, session_sum<&Stats::inputs_sent>},
+    {"input_slack_ms", "slack ms", "mean of the least time that inputs waited for their tick", 1,
+     1.0, mean_ms<&Tally::input_slack_sum_s>},
+    {"inputs_late", "in late", "snapshots that say that a tick found no input", 0, 1.0,
+     session_sum<&Stats::inputs_late>},
     {"inputs_given_up", "given up", "inputs that were never acknowledged", 0, 1.0,
      session_sum<&Stats::inputs_given_up>},
     {"packets_sent", "sent", "datagrams sent", 0, 1.0, link_sum<&net::LinkStats::packets_sent>},

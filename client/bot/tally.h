@@ -19,7 +19,8 @@ struct Tally {
     client::SessionStats session;  // over all sessions of this bot
     RttHistogram rtt;
     double delay_sum_s = 0.0;
-    std::uint64_t delay_samples = 0;
+    double input_slack_sum_s = 0.0;
+    std::uint64_t delay_samples = 0;  // of either
     int knock_offs = 0, assists = 0, falls = 0, coins = 0;
     int coins_spent = 0;
     int purchases = 0, purchases_refused = 0;

@@ -4,7 +4,7 @@
 
 namespace fts::client {
 
-double PacedClock::follow(double target_s, double now_s) {
+double PacedClock::follow(double target_s, double now_s, double max_slow_down) {
     if (!started_) {
         started_ = true;
         reading_s_ = target_s;
@@ -16,9 +16,10 @@ double PacedClock::follow(double target_s, double now_s) {
     const double behind_s = target_s - (reading_s_ + elapsed_s);
     if (behind_s > kLostS) {
         reading_s_ = target_s;
-    } else if (behind_s >= -kLostS) {
-        reading_s_ +=
-            elapsed_s + std::clamp(behind_s, -elapsed_s * kMaxSlowDown, elapsed_s * kMaxSpeedUp);
+        ++jump_count_;
+    } else {
+        reading_s_ += elapsed_s +
+                      std::clamp(behind_s, -elapsed_s * max_slow_down, elapsed_s * kMaxPaceChange);
     }
     return reading_s_;
 }

@@ -7,6 +7,7 @@
 
 #include "client/core/arena_mirror.h"
 #include "client/core/end_words.h"
+#include "client/core/input_pacer.h"
 #include "client/core/input_queue.h"
 #include "client/core/server_clock.h"
 #include "common/game/rules.h"
@@ -19,12 +20,13 @@ namespace {
 
 using replication::Snapshot;
 
-// A stall longer than this is not made up for with stale inputs.
-constexpr int kMaxCatchUpTicks = 15;
 // Rates that a server may announce; anything else is a broken one.
 constexpr int kMaxRateHz = 1000;
 // Share that one snapshot has in the running loss: a memory of about two seconds at 30 Hz.
 constexpr double kLossShare = 1.0 / 60.0;
+// What is found on looking came at some moment since the last look, on average half way. A longer
+// pause than this is our own and says nothing of when it came.
+constexpr double kLongestLookS = 1.0 / 30.0;
 
 // Unique among all purchases of a player for ever, without a memory of earlier ones.
 std::uint64_t random_request_id() {
@@ -53,11 +55,13 @@ struct Session::Impl {
           dialer({config.key, config.server, config.protocol_version, config.pinned_server_key},
                  transport) {}
 
+    void look(double now_s);
     void receive_datagrams(double now_s);
     void handle(const net::Event& event, double now_s);
     void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
     void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
-    void take_snapshot(Snapshot&& snapshot, double now_s);
+    void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
+    void take_snapshot(Snapshot&& snapshot);
     void count_missed_before(replication::Tick tick);
     void welcome(const replication::Welcome& message, double now_s);
     void send_due_inputs(double now_s);
@@ -77,17 +81,26 @@ struct Session::Impl {
     replication::SnapshotHistory history;
     ArenaMirror arena;
     ServerClock clock;
+    replication::Tick heard_tick = 0;
+    double looked_s = 0.0, arrival_s = 0.0;  // last, and what that makes of what has now come
     double ticks_per_snapshot = double(game::kTickRateHz) / game::kSnapshotRateHz;
 
     InputQueue inputs;
+    InputPacer pacer;
     game::InputCommand held_input;
-    double next_input_s = 0.0;
+    double input_slack_s = 0.0;
     std::uint64_t next_request_id = random_request_id();
 
     std::deque<Notice> notices;
     double recent_loss = 0.0;
     SessionStats stats;
 };
+
+void Session::Impl::look(double now_s) {
+    const double since_s = std::max(looked_s, now_s - kLongestLookS);
+    arrival_s = std::max(arrival_s, 0.5 * (since_s + now_s));
+    looked_s = now_s;
+}
 
 void Session::Impl::receive_datagrams(double now_s) {
     transport.poll(now_s, [&](const net::Address& from, std::span<const std::uint8_t> datagram) {
@@ -143,7 +156,7 @@ void Session::Impl::welcome(const replication::Welcome& message, double now_s) {
     ticks_per_snapshot = double(message.tick_rate_hz) / message.snapshot_rate_hz;
     if (status == Status::kJoining) {
         status = Status::kPlaying;
-        next_input_s = now_s;
+        pacer.start(now_s);
     }
 }
 
@@ -155,6 +168,11 @@ void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes,
         return;
     }
     inputs.acknowledge(packet->acked_input_sequence);
+    if (header->tick != heard_tick) {
+        clock.hear(double(header->tick) / arena.tick_rate_hz(), arrival_s);
+        if (header->tick > heard_tick) take_input_timing(*packet, now_s);
+        heard_tick = header->tick;
+    }
     if (arena.has_snapshot() && header->tick <= arena.newest_tick()) {
         if (!history.find(header->tick)) ++stats.snapshots_late;
         return;
@@ -164,7 +182,18 @@ void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes,
     // A baseline that is no longer held makes the part unreadable; the gap shows up as missed.
     if (!held && header->baseline_tick != 0) return;
     auto whole = assembler.add(held ? *held : kNothing, packet->part);
-    if (whole) take_snapshot(std::move(*whole), now_s);
+    if (whole) take_snapshot(std::move(*whole));
+}
+
+void Session::Impl::take_input_timing(const replication::SnapshotPacket& packet, double now_s) {
+    if (packet.acked_input_sequence == 0) return;
+    input_slack_s = 0.0;
+    if (packet.input_slack == replication::kNoInputWaited) {
+        ++stats.inputs_late;
+        return;
+    }
+    input_slack_s = packet.input_slack * replication::kInputSlackStepTicks / arena.tick_rate_hz();
+    pacer.observe(packet.acked_input_sequence, input_slack_s, now_s);
 }
 
 void Session::Impl::count_missed_before(replication::Tick tick) {
@@ -176,27 +205,25 @@ void Session::Impl::count_missed_before(replication::Tick tick) {
     recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
 }
 
-void Session::Impl::take_snapshot(Snapshot&& snapshot, double now_s) {
+void Session::Impl::take_snapshot(Snapshot&& snapshot) {
     if (!replication::is_canonical(snapshot)) {
         ++stats.snapshots_malformed;
         return;
     }
     count_missed_before(snapshot.tick);
     ++stats.snapshots_received;
-    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), now_s);
+    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), arrival_s);
     const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
     history.add(shared);
     arena.add(shared);
 }
 
 void Session::Impl::send_due_inputs(double now_s) {
-    if (status != Status::kPlaying || now_s < next_input_s) return;
-    const double tick_s = 1.0 / arena.tick_rate_hz();
-    const double due = std::floor((now_s - next_input_s) / tick_s) + 1.0;
-    const double answered = std::min(due, double(kMaxCatchUpTicks));
-    stats.inputs_skipped += static_cast<std::uint64_t>(due - answered);
-    next_input_s += due * tick_s;
-    for (int i = 0; i < static_cast<int>(answered); ++i) {
+    if (status != Status::kPlaying) return;
+    const InputPacer::Due due = pacer.due(now_s, 1.0 / arena.tick_rate_hz());
+    if (due.inputs == 0) return;
+    stats.inputs_skipped += due.skipped;
+    for (int i = 0; i < due.inputs; ++i) {
         inputs.push(held_input);
         ++stats.inputs_sent;
     }
@@ -229,6 +256,7 @@ Session::Session(const SessionConfig& config, net::Transport& transport)
 Session::~Session() = default;
 
 void Session::update(double now_s) {
+    impl_->look(now_s);
     impl_->receive_datagrams(now_s);
     if (impl_->status == Status::kEnded) return;
     impl_->dialer.update(now_s);
@@ -288,7 +316,8 @@ View Session::view(double now_s) {
     const net::LinkStats link = self.dialer.stats();
     view.link.rtt_s = link.rtt_s;
     view.link.loss = std::max(link.loss, self.recent_loss);
-    view.link.interpolation_delay_s = self.clock.delay_s();
+    view.link.interpolation_delay_s = drawing ? std::max(0.0, self.clock.delay_s(now_s)) : 0.0;
+    view.link.input_slack_s = self.input_slack_s;
     view.link.starved =
         drawing && view.server_time_s * self.arena.tick_rate_hz() > self.arena.newest_tick();
     if (drawing && self.status == Status::kPlaying) {
@@ -310,6 +339,7 @@ SessionStats Session::stats() const {
     stats.inputs_given_up = impl_->inputs.given_up_count();
     stats.hits_dropped = impl_->arena.hits_dropped_count();
     stats.delay_limited = impl_->clock.delay_limited_count();
+    stats.clock_steps = impl_->clock.step_count();
     stats.link = impl_->dialer.stats();
     return stats;
 }

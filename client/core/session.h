@@ -57,9 +57,11 @@ struct SessionStats {
     std::uint64_t inputs_sent = 0;      // each once, however often repeated
     std::uint64_t inputs_given_up = 0;  // not acknowledged within kMaxInputsPerPacket ticks
     std::uint64_t inputs_skipped = 0;   // ticks not answered: `update` was called too rarely
+    std::uint64_t inputs_late = 0;      // snapshots that say that a tick found no input waiting
     std::uint64_t notices_dropped = 0;  // more than kMaxPendingNotices between two drains
     std::uint64_t hits_dropped = 0;     // more than kMaxPendingHits before a view was made
     std::uint64_t delay_limited = 0;    // arrivals too late for the longest interpolation delay
+    std::uint64_t clock_steps = 0;      // times the moment drawn stepped ahead
     net::LinkStats link;
 };
 

@@ -45,8 +45,12 @@ struct HitView {
 struct LinkView {
     double rtt_s = 0.0;
     double loss = 0.0;  // [0, 1]
+    // The moment drawn is this far behind a snapshot that arrives now after its usual flight.
     double interpolation_delay_s = 0.0;
     bool starved = false;  // this frame had no newer snapshot to draw towards
+    // The least time that inputs waited at the server for their tick, as last reported; 0: none
+    // was there in time.
+    double input_slack_s = 0.0;
 };
 
 struct View {

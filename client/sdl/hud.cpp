@@ -237,6 +237,7 @@ void draw_link(const Canvas& canvas, const client::View& view) {
     const ImVec2 at{canvas.size.x - canvas.px(space::kMargin),
                     canvas.size.y - canvas.px(space::kMargin + 14)};
     std::string text = fixed(view.link.rtt_s * 1000.0, 0) + " ms";
+    text += ", drawn " + fixed(view.link.interpolation_delay_s * 1000.0, 0) + " ms behind";
     if (view.link.loss >= 0.005) text += "   " + fixed(view.link.loss * 100.0, 0) + " % lost";
     const bool bad = view.link.starved || view.link.loss > 0.1 || view.link.rtt_s > 0.25;
     canvas.text(at, TextStyle::kCaption, bad ? palette::kBad : palette::kTextFaint, text,

@@ -140,9 +140,17 @@ struct InputPacket {
 // ---- server to client, unreliable
 // -------------------------------------------------------------------
 
+// How early inputs come, in the byte that each SnapshotPacket has for it.
+inline constexpr double kInputSlackStepTicks = 1.0 / 16.0;
+inline constexpr std::uint8_t kMaxInputSlack = 254;  // that long, or longer
+inline constexpr std::uint8_t kNoInputWaited = 255;  // a tick had to do without
+
 struct SnapshotPacket {
     std::uint32_t acked_input_sequence = 0;  // newest input the server has applied; 0: none
-    std::vector<std::uint8_t> part;          // delta.h
+    // The least time that an input waited for its tick since the snapshot before, in
+    // kInputSlackStepTicks rounded down.
+    std::uint8_t input_slack = kNoInputWaited;
+    std::vector<std::uint8_t> part;  // delta.h
 };
 
 }  // namespace fts::replication

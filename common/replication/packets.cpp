@@ -85,6 +85,7 @@ std::vector<std::uint8_t> encode(const SnapshotPacket& packet) {
     ByteWriter out;
     out.u8(kSnapshotPacketTag);
     out.varint(packet.acked_input_sequence);
+    out.u8(packet.input_slack);
     out.append(packet.part);
     return out.take();
 }
@@ -94,6 +95,7 @@ std::optional<SnapshotPacket> decode_snapshot_packet(std::span<const std::uint8_
     if (in.u8() != kSnapshotPacketTag) return std::nullopt;
     SnapshotPacket packet;
     packet.acked_input_sequence = in.varint();
+    packet.input_slack = in.u8();
     if (in.failed() || !peek_part(in.rest())) return std::nullopt;
     packet.part.assign(in.rest().begin(), in.rest().end());
     return packet;

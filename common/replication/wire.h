@@ -22,7 +22,7 @@ namespace fts::replication {
 inline constexpr std::uint8_t kInputPacketTag = 0x01;
 inline constexpr std::uint8_t kSnapshotPacketTag = 0x02;
 // What a SnapshotPacket adds to its part, at most.
-inline constexpr std::size_t kMaxSnapshotPacketOverheadBytes = 6;
+inline constexpr std::size_t kMaxSnapshotPacketOverheadBytes = 7;
 // A tag, two varints, and inputs that all differ.
 inline constexpr std::size_t kMaxInputPacketBytes = 1 + 2 * 5 + 3 * kMaxInputsPerPacket;
 

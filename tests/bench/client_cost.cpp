@@ -117,7 +117,7 @@ class Table {
     }
     void write() {
         for (const net::ConnectionId id : ids_) {
-            const auto packet = replication::encode(replication::SnapshotPacket{1, snapshot_});
+            const auto packet = replication::encode(replication::SnapshotPacket{1, 8, snapshot_});
             listener_.send_unreliable(id, packet);
         }
     }

@@ -234,7 +234,7 @@ TEST(Session, counts_nonsense_and_plays_on) {
 
 TEST(Session, tells_starved_frames_from_others) {
     Table table;
-    table.run(2.0);
+    table.run(2.0, [&] { table.session->view(table.now_s); });
     EXPECT_FALSE(table.session->view(table.now_s).link.starved);
     table.server_runs = false;
     table.run(1.0, [&] { table.session->view(table.now_s); });

@@ -113,12 +113,14 @@ TEST(SnapshotPacket, CarriesAPartAndAddsNoMoreThanItsOverhead) {
     Rng rng(6);
     const auto parts = encode_delta(Snapshot{}, testing::wild_snapshot(rng, 99, 40), 300);
     for (const auto& part : parts) {
-        const SnapshotPacket packet{.acked_input_sequence = 0xFFFFFFFF, .part = part};
+        const SnapshotPacket packet{
+            .acked_input_sequence = 0xFFFFFFFF, .input_slack = 77, .part = part};
         const Bytes bytes = encode(packet);
         EXPECT_LE(bytes.size(), part.size() + kMaxSnapshotPacketOverheadBytes);
         const auto back = decode_snapshot_packet(bytes);
         ASSERT_TRUE(back);
         EXPECT_EQ(back->acked_input_sequence, packet.acked_input_sequence);
+        EXPECT_EQ(back->input_slack, packet.input_slack);
         EXPECT_EQ(back->part, part);
     }
 }

@@ -68,9 +68,11 @@ TEST(WorkedExample, SnapshotPart) {
 }
 
 TEST(WorkedExample, SnapshotPacket) {
-    Bytes expected = {0x02, 0xb0, 0x09};
+    Bytes expected = {0x02, 0xb0, 0x09, 0x14};
     expected.insert(expected.end(), kDelta.begin(), kDelta.end());
-    EXPECT_EQ(encode(SnapshotPacket{.acked_input_sequence = 1200, .part = kDelta}), expected);
+    EXPECT_EQ(
+        encode(SnapshotPacket{.acked_input_sequence = 1200, .input_slack = 20, .part = kDelta}),
+        expected);
 }
 
 TEST(WorkedExample, InputPacket) {

@@ -66,6 +66,31 @@ TEST(InputQueue, shortens_a_delay_that_is_not_needed) {
     EXPECT_LE(queue.size(), 1U);
 }
 
+TEST(InputQueue, says_how_long_inputs_waited_at_least) {
+    InputQueue queue;
+    EXPECT_EQ(queue.take_slack(), replication::kNoInputWaited);
+    queue.add(packet(1, 2), 0.25);
+    queue.next();
+    EXPECT_EQ(queue.take_slack(), 4) << "a quarter of a tick";
+    queue.add(packet(3, 3), 1.0);
+    queue.next();
+    queue.next();
+    EXPECT_EQ(queue.take_slack(), 20) << "input 2 waited 1.25 ticks, input 3 two";
+}
+
+TEST(InputQueue, says_that_a_tick_found_no_input) {
+    InputQueue queue;
+    queue.add(packet(1, 1), 0.5);
+    queue.next();
+    queue.next();
+    queue.add(packet(2, 2), 0.5);
+    queue.next();
+    EXPECT_EQ(queue.take_slack(), replication::kNoInputWaited);
+    queue.add(packet(3, 3), 0.5);
+    queue.next();
+    EXPECT_EQ(queue.take_slack(), 8) << "it is said once";
+}
+
 TEST(InputQueue, ignores_old_packets_that_come_late) {
     InputQueue queue;
     queue.add(packet(10, 12));
