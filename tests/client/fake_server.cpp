@@ -105,8 +105,8 @@ void FakeServer::send_snapshot() {
     const replication::Snapshot nothing;
     const auto parts = replication::encode_delta(held ? *held : nothing, *snapshot, 1000);
     for (const auto& part : parts) {
-        listener_.send_unreliable(
-            *client_, replication::encode(replication::SnapshotPacket{last_applied, 8, part}));
+        listener_.send_unreliable(*client_, replication::encode(replication::SnapshotPacket{
+                                                last_applied, input_slack, part}));
     }
 }
 

@@ -39,6 +39,7 @@ class FakeServer {
     replication::Welcome welcome{9, 0, 60, 30, "fake"};
     std::vector<game::InputCommand> applied;  // in the order applied
     std::uint32_t last_applied = 0;
+    std::uint8_t input_slack = 4;      // as each snapshot says it: a quarter of a tick
     std::uint32_t sequences_lost = 0;  // gaps that no packet repeated
     std::set<replication::Tick> acked_ticks;
     std::set<replication::Tick> sent_ticks;

@@ -242,6 +242,61 @@ TEST(Session, tells_starved_frames_from_others) {
     EXPECT_GT(table.session->stats().frames_starved, 40U);
 }
 
+TEST(Session, seldom_starves_and_never_steps_at_5_percent_loss_and_20_ms_jitter) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Table table({.loss = 0.05, .delay_s = 0.035, .jitter_s = 0.02, .seed = seed});
+        table.run_until_playing();
+        table.run(10.0, [&] { table.session->view(table.now_s); });
+        const SessionStats before = table.session->stats();
+        double delay_sum_s = 0.0;
+        table.run(60.0, [&] {
+            delay_sum_s += table.session->view(table.now_s).link.interpolation_delay_s;
+        });
+        const SessionStats after = table.session->stats();
+        const auto frames = static_cast<double>(after.frames - before.frames);
+        EXPECT_LT(double(after.frames_starved - before.frames_starved), 0.005 * frames);
+        EXPECT_LT(delay_sum_s / frames, 0.11);  // of 30 snapshots a second
+        EXPECT_EQ(after.clock_steps, 0U);
+    }
+}
+
+TEST(Session, says_that_the_moment_drawn_stepped_ahead_after_a_stall) {
+    Table table({.delay_s = 0.03});
+    table.run_until_playing();
+    table.run(2.0, [&] { table.session->view(table.now_s); });
+    table.network.is_cut = true;
+    table.run(2.0, [&] { table.session->view(table.now_s); });
+    table.network.is_cut = false;
+    table.run(2.0, [&] { table.session->view(table.now_s); });
+    EXPECT_EQ(table.session->status(), Status::kPlaying);
+    EXPECT_EQ(table.session->stats().clock_steps, 1U);
+    EXPECT_FALSE(table.session->view(table.now_s).link.starved);
+}
+
+TEST(Session, sends_later_inputs_when_they_arrive_too_early) {
+    const auto sent = [](std::uint8_t input_slack) {
+        Table table({.delay_s = 0.02});
+        table.server.input_slack = input_slack;
+        table.run_until_playing();
+        table.run(1.8);
+        return static_cast<double>(table.session->stats().inputs_sent);
+    };
+    constexpr std::uint8_t kRight = 4, kTooEarly = kRight + 5 * 16;
+    EXPECT_NEAR(sent(kRight) - sent(kTooEarly), 5.0, 1.0) << "as many ticks later";
+}
+
+TEST(Session, counts_ticks_that_found_no_input_of_its_own) {
+    Table table;
+    table.run(1.0);
+    EXPECT_EQ(table.session->stats().inputs_late, 0U);
+    EXPECT_GT(table.session->view(table.now_s).link.input_slack_s, 0.0);
+    table.server.input_slack = replication::kNoInputWaited;
+    table.run(1.0);
+    EXPECT_NEAR(double(table.session->stats().inputs_late), 30.0, 1.0);  // snapshots
+    EXPECT_EQ(table.session->view(table.now_s).link.input_slack_s, 0.0);
+}
+
 // ---- how it ends
 
 TEST(SessionEnd, is_unreachable_when_nothing_ever_answers) {
