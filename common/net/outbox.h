@@ -21,7 +21,7 @@ class Outbox {
   public:
     struct Datagram {
         Address to;
-        std::span<const std::uint8_t> bytes;
+        std::span<std::uint8_t> bytes;  // the system's interface asks for ones that are not const
     };
     // How far a call came: the first `sent` left, and unless all did, `error` (an errno) says why
     // the next one did not.
