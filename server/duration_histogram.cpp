@@ -13,6 +13,7 @@ void DurationHistogram::record(double duration_s) {
     }
     ++buckets_[std::min(bucket, kBuckets - 1)];
     ++count_;
+    sum_s_ += duration_s;
     max_s_ = std::max(max_s_, duration_s);
 }
 

@@ -14,6 +14,7 @@ class DurationHistogram {
 
     std::uint64_t count() const { return count_; }
     double max_s() const { return max_s_; }
+    double mean_s() const { return count_ == 0 ? 0.0 : sum_s_ / static_cast<double>(count_); }
     // The duration that a share of `quantile` in [0, 1] does not exceed, to within a bucket; 0 when
     // empty.
     double quantile_s(double quantile) const;
@@ -25,6 +26,7 @@ class DurationHistogram {
 
     std::array<std::uint64_t, kBuckets> buckets_{};
     std::uint64_t count_ = 0;
+    double sum_s_ = 0.0;
     double max_s_ = 0.0;
 };
 

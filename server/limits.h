@@ -1,6 +1,8 @@
 // Every fixed limit of the server, in one place. Reaching one is counted or logged, never silent.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,7 +16,7 @@ namespace fts::server {
 // ---- the process
 // ------------------------------------------------------------------------------------
 
-inline constexpr int kMaxArenas = 16;
+inline constexpr int kMaxArenas = 64;
 // Connections beyond the players' places, so that a full server can say so, and a player who comes
 // back is let in before the old session has timed out.
 inline constexpr std::size_t kSpareConnections = 16;
@@ -27,8 +29,11 @@ inline constexpr std::size_t kMaxServerNameBytes = 48;
 inline constexpr int kMaxCatchUpTicks = 5;
 inline constexpr double kOverrunNoticeEveryS = 1.0;
 
-inline constexpr int kTicksPerSnapshot = game::kTickRateHz / game::kSnapshotRateHz;
-static_assert(kTicksPerSnapshot * game::kSnapshotRateHz == game::kTickRateHz);
+// Snapshots a second that a host may choose: whole numbers of ticks lie between them.
+inline constexpr std::array kSnapshotRatesHz{20, 30, 60};
+static_assert(std::ranges::all_of(kSnapshotRatesHz,
+                                  [](int rate_hz) { return game::kTickRateHz % rate_hz == 0; }));
+static_assert(std::ranges::find(kSnapshotRatesHz, game::kSnapshotRateHz) != kSnapshotRatesHz.end());
 
 // ---- one client
 // -------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -56,6 +57,8 @@ std::optional<Resources> acquire(const Options& options, std::string& error) {
     config.name = options.name;
     config.arenas = options.arenas;
     config.players_per_arena = options.players_per_arena;
+    config.snapshot_rate_hz = options.snapshot_rate_hz;
+    config.stage_clock = monotonic_now_s;
     config.seed = options.seed;
     config.tolerance = options.tolerance;
 
@@ -113,14 +116,12 @@ int complain(const std::string& message) {
     return kExitFailure;
 }
 
-int conclude(const Server& server, const DurationHistogram& tick_durations,
-             const std::string& report_file) {
+int conclude(const Server& server, const RunFacts& run, const std::string& report_file) {
     const ServerReport report = server.report();
-    std::fputs(text_of(report, tick_durations).c_str(), stdout);
+    std::fputs(text_of(report, run).c_str(), stdout);
     std::fflush(stdout);
     std::string error;
-    if (!report_file.empty() &&
-        !write_report(report_file, json_of(report, tick_durations), error)) {
+    if (!report_file.empty() && !write_report(report_file, json_of(report, run), error)) {
         return complain(error);
     }
     if (report.unwritten_transactions > 0) {
@@ -149,11 +150,13 @@ int run(const Options& options) {
                 unsigned{resources->transport->local_port()});
     std::fflush(stdout);
 
-    DurationHistogram tick_durations;
-    serve(server, *resources->transport, tick_durations);
+    RunFacts facts;
+    serve(server, *resources->transport, facts.tick_durations);
     log(LogLevel::kInfo, "stopping; players here: " + std::to_string(server.player_count()));
     server.shut_down(monotonic_now_s(), "the server is shutting down");
-    return conclude(server, tick_durations, options.report_file);
+    facts.cpu_s = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    facts.traffic = resources->transport->stats();
+    return conclude(server, facts, options.report_file);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "server/server.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 #include <variant>
@@ -34,10 +35,12 @@ Server::Server(const ServerConfig& config, net::Transport& transport, std::uniqu
       log_(std::move(log)),
       journal_(opened(ledger_, std::move(store)), config.journal),
       listener_(listener_config(config), transport),
-      transport_(transport) {
+      transport_(transport),
+      stages_(config.stage_clock) {
     assert(!config.levels.empty());
     assert(config.arenas >= 1 && config.arenas <= kMaxArenas);
     assert(config.players_per_arena >= 1 && config.players_per_arena <= game::kMaxPlayersPerArena);
+    assert(std::ranges::find(kSnapshotRatesHz, config.snapshot_rate_hz) != kSnapshotRatesHz.end());
     const std::vector<physics::Plan> plans =
         plan_levels(config.levels, config.players_per_arena, config.tolerance);
     for (const std::string& line : describe_levels(plans)) log_(LogLevel::kInfo, line);
@@ -55,18 +58,24 @@ Server::Server(const ServerConfig& config, net::Transport& transport, std::uniqu
 Server::~Server() = default;
 
 int Server::tick(double now_s) {
+    stages_.enter(Stage::kReceive);
     receive(now_s);
     const int due = clock_.due(now_s);
     if (due == 0) {
         transport_.flush();
+        stages_.leave();
         return 0;
     }
 
     for (int i = 0; i < due && !paused_; ++i) play_one_tick();
+    stages_.enter(Stage::kLedger);
     settle_ledger(now_s);
+    stages_.enter(Stage::kUpkeep);
     end_overdue_sessions(now_s);
     listener_.update(now_s);
+    stages_.enter(Stage::kSend);
     transport_.flush();
+    stages_.end_tick();
     say_what_is_wrong(now_s);
     return due;
 }
@@ -82,14 +91,20 @@ void Server::receive(double now_s) {
 
 void Server::play_one_tick() {
     ++ticks_;
+    player_ticks_ += player_count();
     for (const auto& arena : arenas_) {
+        stages_.enter(Stage::kInputs);
         apply_inputs(*arena);
+        stages_.enter(Stage::kMatch);
         if (arena->match.tick().overrun) ++world_overruns_;
+        stages_.enter(Stage::kMessages);
         deliver(*arena);
     }
+    const auto ticks_per_snapshot =
+        static_cast<std::uint64_t>(game::kTickRateHz / config_.snapshot_rate_hz);
     // Arenas take turns, so that the work of encoding spreads over the ticks.
     for (std::size_t i = 0; i < arenas_.size(); ++i) {
-        if ((ticks_ + i) % kTicksPerSnapshot == 0) publish_snapshot(*arenas_[i]);
+        if ((ticks_ + i) % ticks_per_snapshot == 0) publish_snapshot(*arenas_[i]);
     }
 }
 
@@ -128,6 +143,7 @@ void Server::note_level(const Arena& arena, const Outgoing& outgoing) {
 
 void Server::publish_snapshot(Arena& arena) {
     if (arena.players.empty()) return;
+    stages_.enter(Stage::kSnapshots);
     replication::Snapshot snapshot = arena.match.snapshot();
     arena.match.clear_hits();
     if (snapshot.tick <= arena.feed.newest_tick()) return;
@@ -138,8 +154,10 @@ void Server::publish_snapshot(Arena& arena) {
 }
 
 void Server::send_snapshot(Arena& arena, Session& session) {
+    stages_.enter(Stage::kSnapshots);
     const SnapshotFeed::Parts& parts = arena.feed.parts_for(session.held_tick);
     if (parts.empty()) count("snapshot_too_large");
+    stages_.enter(Stage::kSeal);
     const std::uint8_t input_slack = session.inputs.take_slack();
     for (const std::vector<std::uint8_t>& part : parts) {
         const auto bytes = replication::encode(
@@ -236,6 +254,9 @@ ServerReport Server::report() const {
     report.ticks = ticks_;
     report.clock_overruns = clock_.overruns();
     report.dropped_ticks = clock_.dropped_ticks();
+    report.late_ticks = clock_.late_ticks();
+    report.player_ticks = player_ticks_;
+    report.stages = stages_.histograms();
     report.joins = joins_;
     report.store_failures = store_failures_;
     report.unwritten_transactions = unwritten_;

@@ -34,6 +34,7 @@
 #include "server/match/match.h"
 #include "server/session.h"
 #include "server/snapshot_feed.h"
+#include "server/stage_times.h"
 #include "server/tick_clock.h"
 
 namespace fts::server {
@@ -44,9 +45,11 @@ struct ServerConfig {
     std::vector<game::Level> levels;                        // at least one
     int arenas = 1;                                         // [1, kMaxArenas]
     int players_per_arena = game::kDefaultPlayersPerArena;  // [1, game::kMaxPlayersPerArena]
+    int snapshot_rate_hz = game::kSnapshotRateHz;           // one of kSnapshotRatesHz
     std::uint64_t seed = 1;                                 // arena i plays with seed + i
     JournalConfig journal;
     double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h
+    StageTimes::Clock stage_clock;               // empty: stages are not timed
 };
 
 struct ArenaReport {
@@ -63,6 +66,9 @@ struct ServerReport {
     std::uint64_t ticks = 0;
     std::uint64_t clock_overruns = 0;  // times the server came so late that ticks were dropped
     std::uint64_t dropped_ticks = 0;
+    std::uint64_t late_ticks = 0;    // made up for
+    std::uint64_t player_ticks = 0;  // players in each tick, added up
+    StageTimes::Histograms stages;   // empty ones without a stage clock
     std::uint64_t joins = 0;
     std::uint64_t store_failures = 0;
     std::size_t unwritten_transactions = 0;  // lost, because the store failed to the very end
@@ -156,6 +162,7 @@ class Server {
     net::Listener listener_;
     net::Transport& transport_;
     TickClock clock_{game::kTickDurationS};
+    StageTimes stages_;
     std::vector<std::unique_ptr<Arena>> arenas_;
     std::map<net::ConnectionId, Session> sessions_;
 
@@ -167,6 +174,7 @@ class Server {
     bool admitting_ = true;
 
     std::uint64_t ticks_ = 0;
+    std::uint64_t player_ticks_ = 0;
     std::uint64_t joins_ = 0;
     std::uint64_t store_failures_ = 0;
     std::size_t unwritten_ = 0;

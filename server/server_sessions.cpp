@@ -209,8 +209,8 @@ void Server::admit(Session& session, const PlayerRecord& record, double now_s) {
     log_(LogLevel::kInfo, session.who() + " joined arena " + std::to_string(*place) + " with " +
                               std::to_string(record.coins) + " coins");
 
-    send(session.id, replication::Welcome{*player, *place, game::kTickRateHz, game::kSnapshotRateHz,
-                                          config_.name});
+    send(session.id, replication::Welcome{*player, *place, game::kTickRateHz,
+                                          config_.snapshot_rate_hz, config_.name});
     for (const replication::ServerMessage& message : arena.match.briefing(*player)) {
         send(session.id, message);
     }

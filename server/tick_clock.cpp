@@ -1,5 +1,6 @@
 #include "server/tick_clock.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/limits.h"
@@ -15,6 +16,7 @@ int TickClock::due(double now_s) {
     const double elapsed_ticks = std::floor((now_s - origin_s_) / tick_duration_s_);
     const double late = elapsed_ticks - static_cast<double>(ticks_done_);
     if (!(late >= 1.0)) return 0;
+    late_ticks_ += static_cast<std::uint64_t>(std::min(late, double{kMaxCatchUpTicks})) - 1;
     if (late <= kMaxCatchUpTicks) {
         ticks_done_ += static_cast<std::int64_t>(late);
         return static_cast<int>(late);

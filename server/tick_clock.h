@@ -22,6 +22,8 @@ class TickClock {
 
     std::uint64_t overruns() const { return overruns_; }  // calls of `due` that dropped ticks
     std::uint64_t dropped_ticks() const { return dropped_ticks_; }
+    // Ticks made up for: run when the one after them was already due.
+    std::uint64_t late_ticks() const { return late_ticks_; }
 
     // Ticks dropped since the last notice, when one is due.
     std::optional<std::uint64_t> overrun_notice(double now_s);
@@ -33,6 +35,7 @@ class TickClock {
     std::int64_t ticks_done_ = 0;  // since origin
     std::uint64_t overruns_ = 0;
     std::uint64_t dropped_ticks_ = 0;
+    std::uint64_t late_ticks_ = 0;
     std::uint64_t dropped_noticed_ = 0;
     std::optional<double> last_notice_s_;
 };

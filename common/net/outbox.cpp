@@ -32,6 +32,9 @@ void Outbox::send(const SendSome& send_some) {
     while (first < count_) {
         const Progress progress = send_some(std::span(waiting_).subspan(first, count_ - first));
         assert(progress.sent <= count_ - first);
+        for (std::size_t i = 0; i < progress.sent; ++i) {
+            sent_bytes_ += waiting_[first + i].bytes.size();
+        }
         first += progress.sent;
         sent_count_ += progress.sent;
         if (progress.sent > 0) was_refused = false;

@@ -45,6 +45,7 @@ class Outbox {
     void send(const SendSome& send_some);
 
     std::uint64_t sent_count() const { return sent_count_; }
+    std::uint64_t sent_bytes() const { return sent_bytes_; }
 
   private:
     using Slot = std::array<std::uint8_t, kMaxDatagramBytes>;
@@ -55,6 +56,7 @@ class Outbox {
     std::array<Datagram, kMaxWaitingDatagrams> waiting_;  // whose bytes are in the slots
     std::size_t count_ = 0;
     std::uint64_t sent_count_ = 0;
+    std::uint64_t sent_bytes_ = 0;
 };
 
 }  // namespace fts::net

@@ -152,6 +152,7 @@ std::size_t UdpTransport::poll(double /*now_s*/, const Receiver& receiver) {
             }
         }
         for (std::size_t i = 0; i < outcome.count; ++i) {
+            impl.stats.bytes_received += impl.received.bytes(i).size();
             receiver(impl.received.from(i), impl.received.bytes(i));
         }
         count += outcome.count;
@@ -170,6 +171,7 @@ DropCounters UdpTransport::drops() const {
 UdpStats UdpTransport::stats() const {
     UdpStats stats = impl_->stats;
     stats.datagrams_sent = impl_->outbox.sent_count();
+    stats.bytes_sent = impl_->outbox.sent_bytes();
     return stats;
 }
 

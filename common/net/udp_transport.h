@@ -14,8 +14,9 @@ namespace fts::net {
 enum class UdpCalls : std::uint8_t { kBatched, kOneByOne };
 
 struct UdpStats {
-    std::uint64_t datagrams_sent = 0, send_calls = 0;
-    std::uint64_t datagrams_received = 0, receive_calls = 0;  // calls that found nothing as well
+    std::uint64_t datagrams_sent = 0, bytes_sent = 0, send_calls = 0;
+    std::uint64_t datagrams_received = 0, bytes_received = 0,
+                  receive_calls = 0;  // calls that found nothing as well
 };
 
 class UdpTransport final : public Transport {

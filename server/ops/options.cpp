@@ -40,6 +40,11 @@ void declare(CLI::App& app, Options& options) {
         ->envname("FTS_PLAYERS")
         ->check(CLI::Range(1, game::kMaxPlayersPerArena))
         ->capture_default_str();
+    app.add_option("--snapshot-rate", options.snapshot_rate_hz,
+                   "Snapshots a second to each player: 20, 30 or 60")
+        ->envname("FTS_SNAPSHOT_RATE")
+        ->check(CLI::IsMember(std::vector<int>(kSnapshotRatesHz.begin(), kSnapshotRatesHz.end())))
+        ->capture_default_str();
     app.add_option("--seed", options.seed, "Seed of the matches; a random one by default")
         ->envname("FTS_SEED");
     app.add_option("--name", options.name, "Name shown to players")

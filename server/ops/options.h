@@ -21,6 +21,7 @@ struct Options {
     std::string levels_folder;
     int arenas = 1;
     int players_per_arena = game::kDefaultPlayersPerArena;
+    int snapshot_rate_hz = game::kSnapshotRateHz;
     std::uint64_t seed = 0;
     std::string name = "Fear The Sphere";
     double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h

@@ -92,6 +92,46 @@ nlohmann::json json_of(const ArenaReport& arena) {
             {"audit", json_of(arena.audit)}};
 }
 
+double per(double amount, double of) {
+    return of > 0.0 ? amount / of : 0.0;
+}
+
+// Stages that were not timed are left out.
+std::string stages_of(const ServerReport& report) {
+    if (report.stages.front().count() == 0) return "";
+    constexpr const char* kRow = "  {:<12}{:>9}  {:>9}  {:>9}  {:>9}\n";
+    std::string text =
+        "Stages of a tick, us\n" + fmt::format(kRow, "", "mean", "p50", "p99", "max");
+    const auto us = [](double duration_s) { return fmt::format("{:.1f}", 1e6 * duration_s); };
+    for (std::size_t i = 0; i < report.stages.size(); ++i) {
+        const DurationHistogram& stage = report.stages[i];
+        text += fmt::format(kRow, kStageNames[i], us(stage.mean_s()), us(stage.quantile_s(0.5)),
+                            us(stage.quantile_s(0.99)), us(stage.max_s()));
+    }
+    return text;
+}
+
+nlohmann::json stages_json_of(const ServerReport& report) {
+    nlohmann::json stages = nlohmann::json::object();
+    for (std::size_t i = 0; i < report.stages.size(); ++i) {
+        const DurationHistogram& stage = report.stages[i];
+        if (stage.count() == 0) continue;
+        stages[std::string(kStageNames[i])] = {{"mean_us", 1e6 * stage.mean_s()},
+                                               {"p50_us", 1e6 * stage.quantile_s(0.5)},
+                                               {"p99_us", 1e6 * stage.quantile_s(0.99)},
+                                               {"max_us", 1e6 * stage.max_s()}};
+    }
+    return stages;
+}
+
+std::string drops_of(const ServerReport& report) {
+    std::string text;
+    for (const auto& [reason, count] : report.drops) {
+        if (count > 0) text += fmt::format(kFact, reason, count);
+    }
+    return text.empty() ? "" : "Dropped or refused\n" + text;
+}
+
 }  // namespace
 
 physics::CollisionAudit combined_audit(const ServerReport& report) {
@@ -108,7 +148,7 @@ physics::CollisionAudit combined_audit(const ServerReport& report) {
     return all;
 }
 
-std::string text_of(const ServerReport& report, const DurationHistogram& tick_durations) {
+std::string text_of(const ServerReport& report, const RunFacts& run) {
     std::string text = "Scoreboard\n";
     for (const ArenaReport& arena : report.arenas) text += scoreboard_of(arena);
 
@@ -132,14 +172,24 @@ std::string text_of(const ServerReport& report, const DurationHistogram& tick_du
     text += "Ticks\n";
     fact("played", fmt::format("{}; {} overran the event budget, {} came too late and were dropped",
                                report.ticks, world_overruns_of(report), report.dropped_ticks));
+    fact("missed",
+         fmt::format("{}: {} made up for, {} dropped", report.late_ticks + report.dropped_ticks,
+                     report.late_ticks, report.dropped_ticks));
+    const DurationHistogram& durations = run.tick_durations;
     fact("duration",
-         fmt::format("p50 {:.2f} ms, p99 {:.2f} ms, max {:.2f} ms",
-                     1e3 * tick_durations.quantile_s(0.5), 1e3 * tick_durations.quantile_s(0.99),
-                     1e3 * tick_durations.max_s()));
-    return text;
+         fmt::format("p50 {:.2f} ms, p99 {:.2f} ms, max {:.2f} ms", 1e3 * durations.quantile_s(0.5),
+                     1e3 * durations.quantile_s(0.99), 1e3 * durations.max_s()));
+    fact("CPU", fmt::format("{:.2f} s, {:.3f} ms a tick", run.cpu_s,
+                            1e3 * per(run.cpu_s, static_cast<double>(report.ticks))));
+    const double player_s = static_cast<double>(report.player_ticks) * game::kTickDurationS;
+    fact("traffic", fmt::format("{:.0f} bytes/s to each player, {:.0f} from each",
+                                per(static_cast<double>(run.traffic.bytes_sent), player_s),
+                                per(static_cast<double>(run.traffic.bytes_received), player_s)));
+    return text + stages_of(report) + drops_of(report);
 }
 
-std::string json_of(const ServerReport& report, const DurationHistogram& tick_durations) {
+std::string json_of(const ServerReport& report, const RunFacts& run) {
+    const DurationHistogram& durations = run.tick_durations;
     nlohmann::json arenas = nlohmann::json::array();
     for (const ArenaReport& arena : report.arenas) arenas.push_back(json_of(arena));
     const nlohmann::json json = {{"arenas", arenas},
@@ -156,9 +206,21 @@ std::string json_of(const ServerReport& report, const DurationHistogram& tick_du
                                    {"event_budget_overruns", world_overruns_of(report)},
                                    {"clock_overruns", report.clock_overruns},
                                    {"dropped", report.dropped_ticks},
-                                   {"p50_ms", 1e3 * tick_durations.quantile_s(0.5)},
-                                   {"p99_ms", 1e3 * tick_durations.quantile_s(0.99)},
-                                   {"max_ms", 1e3 * tick_durations.max_s()}}},
+                                   {"made_up_for", report.late_ticks},
+                                   {"missed", report.late_ticks + report.dropped_ticks},
+                                   {"p50_ms", 1e3 * durations.quantile_s(0.5)},
+                                   {"p99_ms", 1e3 * durations.quantile_s(0.99)},
+                                   {"max_ms", 1e3 * durations.max_s()}}},
+                                 {"stages", stages_json_of(report)},
+                                 {"cpu_s", run.cpu_s},
+                                 {"player_ticks", report.player_ticks},
+                                 {"traffic",
+                                  {{"datagrams_sent", run.traffic.datagrams_sent},
+                                   {"bytes_sent", run.traffic.bytes_sent},
+                                   {"send_calls", run.traffic.send_calls},
+                                   {"datagrams_received", run.traffic.datagrams_received},
+                                   {"bytes_received", run.traffic.bytes_received},
+                                   {"receive_calls", run.traffic.receive_calls}}},
                                  {"joins", report.joins},
                                  {"store_failures", report.store_failures},
                                  {"unwritten_transactions", report.unwritten_transactions},

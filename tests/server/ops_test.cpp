@@ -56,12 +56,13 @@ TEST(Options, come_from_flags_before_a_file_before_the_environment) {
 
 TEST(Options, are_refused_with_a_usage_code_when_they_make_no_sense) {
     const std::vector<std::vector<const char*>> nonsense = {
-        {"--no-such-flag"},       {"--port", "70000"},
-        {"--port", "seven"},      {"--arenas", "0"},
-        {"--players", "65"},      {"--log-level", "loud"},
-        {"--config", "/nowhere"}, {"stray"},
-        {"--fidelity", "good"},   {"--fidelity", "0"},
-        {"--fidelity", "1.5"},    {"--fidelity", "nan"}};
+        {"--no-such-flag"},        {"--port", "70000"},
+        {"--port", "seven"},       {"--arenas", "0"},
+        {"--players", "65"},       {"--log-level", "loud"},
+        {"--config", "/nowhere"},  {"stray"},
+        {"--fidelity", "good"},    {"--fidelity", "0"},
+        {"--snapshot-rate", "25"}, {"--snapshot-rate", "0"},
+        {"--fidelity", "1.5"},     {"--fidelity", "nan"}};
     for (const auto& arguments : nonsense) {
         SCOPED_TRACE(arguments[0]);
         const auto parsed = parse(arguments);
@@ -136,14 +137,23 @@ TEST(Report, shouts_when_the_books_do_not_balance) {
 }
 
 TEST(Report, says_the_same_to_programs) {
-    DurationHistogram durations;
-    durations.record(0.002);
-    const auto json = nlohmann::json::parse(json_of(sample_report(), durations));
+    RunFacts run;
+    run.tick_durations.record(0.002);
+    run.cpu_s = 1.5;
+    ServerReport report = sample_report();
+    report.late_ticks = 3;
+    report.dropped_ticks = 4;
+    report.stages[2].record(0.001);
+    const auto json = nlohmann::json::parse(json_of(report, run));
     EXPECT_EQ(json["arenas"][0]["scoreboard"][0]["name"], "Zoë");
     EXPECT_EQ(json["knock_offs"], 2 * (8 + 7));
     EXPECT_EQ(json["coins"]["balanced"], true);
     EXPECT_EQ(json["drops"]["malformed_payload"], 3);
     EXPECT_NEAR(json["ticks"]["max_ms"].get<double>(), 2.0, 1e-9);
+    EXPECT_EQ(json["ticks"]["missed"], 7);
+    EXPECT_EQ(json["cpu_s"], 1.5);
+    EXPECT_NEAR(json["stages"]["match"]["max_us"].get<double>(), 1000.0, 1e-9);
+    EXPECT_FALSE(json["stages"].contains("send"));
     EXPECT_EQ(json["audit"]["worst_energy_error"], 4e-16);
 }
 

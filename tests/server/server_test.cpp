@@ -39,6 +39,34 @@ TEST_F(ServerTest, sends_thirty_snapshots_a_second_as_deltas_against_what_the_cl
     EXPECT_EQ(ada.snapshot.balls.size(), 2U);
 }
 
+TEST_F(ServerTest, sends_as_many_snapshots_a_second_as_the_host_chose_and_says_so) {
+    for (const int rate_hz : kSnapshotRatesHz) {
+        config.snapshot_rate_hz = rate_hz;
+        clients.clear();
+        start();
+        FakeClient& ada = join("Ada");
+        EXPECT_EQ(ada.welcome()->snapshot_rate_hz, rate_hz);
+        const std::uint64_t before = ada.snapshots;
+        run(1.0);
+        EXPECT_NEAR(static_cast<double>(ada.snapshots - before), rate_hz, 1.0);
+    }
+}
+
+TEST_F(ServerTest, times_the_stages_of_each_tick_with_the_clock_it_is_given) {
+    double clock_s = 0.0;
+    config.stage_clock = [&clock_s] { return clock_s += 1e-6; };
+    start();
+    join("Ada");
+    run(1.0);
+    const ServerReport report = server->report();
+    for (std::size_t i = 0; i < report.stages.size(); ++i) {
+        EXPECT_GT(report.stages[i].mean_s(), 0.0) << kStageNames[i];
+        EXPECT_NEAR(static_cast<double>(report.stages[i].count()),
+                    static_cast<double>(report.ticks), 1.0);
+    }
+    EXPECT_GT(report.player_ticks, 59U);
+}
+
 TEST_F(ServerTest, acknowledges_the_inputs_it_has_applied) {
     start();
     FakeClient& ada = join("Ada");

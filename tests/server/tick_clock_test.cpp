@@ -40,7 +40,10 @@ TEST(TickClock, loses_and_invents_no_tick_however_irregularly_it_is_asked) {
 TEST(TickClock, makes_up_for_a_short_delay) {
     TickClock clock(kTickS);
     clock.due(0.0);
-    EXPECT_EQ(clock.due(kMaxCatchUpTicks * kTickS), kMaxCatchUpTicks);
+    EXPECT_EQ(clock.due(1 * kTickS), 1);
+    EXPECT_EQ(clock.late_ticks(), 0U);
+    EXPECT_EQ(clock.due((1 + kMaxCatchUpTicks) * kTickS), kMaxCatchUpTicks);
+    EXPECT_EQ(clock.late_ticks(), kMaxCatchUpTicks - 1U) << "the last of them is in time";
     EXPECT_EQ(clock.overruns(), 0U);
 }
 
@@ -50,6 +53,7 @@ TEST(TickClock, drops_and_counts_what_a_long_delay_leaves_beyond_the_limit) {
     EXPECT_EQ(clock.due(100 * kTickS), kMaxCatchUpTicks);
     EXPECT_EQ(clock.overruns(), 1U);
     EXPECT_EQ(clock.dropped_ticks(), 100U - kMaxCatchUpTicks);
+    EXPECT_EQ(clock.late_ticks(), kMaxCatchUpTicks - 1U);
     EXPECT_EQ(clock.due(100.5 * kTickS), 0) << "never races to catch up";
     EXPECT_EQ(clock.due(101 * kTickS), 1);
 }
@@ -90,11 +94,13 @@ TEST(DurationHistogram, knows_quantiles_to_within_a_bucket) {
     EXPECT_NEAR(durations.quantile_s(0.99), 9.9e-3, 0.05 * 9.9e-3);
     EXPECT_DOUBLE_EQ(durations.quantile_s(1.0), durations.max_s());
     EXPECT_DOUBLE_EQ(durations.max_s(), 1e-2);
+    EXPECT_NEAR(durations.mean_s(), 5.005e-3, 1e-12);
 }
 
 TEST(DurationHistogram, holds_any_duration) {
     DurationHistogram durations;
     EXPECT_EQ(durations.quantile_s(0.5), 0.0);
+    EXPECT_EQ(durations.mean_s(), 0.0);
     durations.record(0.0);
     durations.record(1e9);
     EXPECT_EQ(durations.count(), 2U);
