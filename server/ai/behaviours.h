@@ -15,7 +15,7 @@ struct Situation {
     const physics::Platform* platform = nullptr;
     game::BallStats stats;
     SeenBall own;
-    std::vector<SeenBall> others;  // by id
+    std::vector<SeenBall> others;  // by id; those that matter (below), and any more
     double look_ahead_s = 0.0;
 };
 
@@ -26,6 +26,8 @@ struct Intent {
 };
 
 Intent decide(game::Behaviour behaviour, const Situation& situation);
+// Whether `decide` looks at that ball at all.
+bool matters(game::Behaviour behaviour, const SeenBall& other);
 
 // Gets behind its target, on the line from the nearest edge through it, and drives it out.
 Intent chase(const Situation& situation);

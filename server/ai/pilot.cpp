@@ -50,6 +50,12 @@ Intent decide(game::Behaviour behaviour, const Situation& situation) {
     return {};
 }
 
+bool matters(game::Behaviour behaviour, const SeenBall& other) {
+    const bool are_herd =
+        behaviour == game::Behaviour::kHerd && other.behaviour == game::Behaviour::kHerd;
+    return other.is_player || are_herd;
+}
+
 Pilot::Pilot(game::Behaviour behaviour, game::Difficulty difficulty, std::uint64_t seed)
     : behaviour_(behaviour), skill_(skill_of(difficulty)), random_(seed) {
     // Spreads the decisions of a level's balls over its ticks.
@@ -77,15 +83,15 @@ game::InputCommand Pilot::decide_now(std::uint16_t ball, const game::BallStats& 
                         .others = {},
                         .look_ahead_s = skill_.look_ahead_s};
     bool found = false;
-    for (SeenBall other : seen) {
-        if (other.id == ball) {
+    for (const SeenBall& ball_seen : seen) {
+        if (ball_seen.id == ball) {
             // One knows one's own speed, and allows for being late.
-            other.position_m += other.velocity_mps * (skill_.reaction_ms / 1000.0);
-            situation.own = other;
+            situation.own = ball_seen;
+            situation.own.position_m += ball_seen.velocity_mps * (skill_.reaction_ms / 1000.0);
             found = true;
-        } else {
+        } else if (matters(behaviour_, ball_seen)) {
+            SeenBall& other = situation.others.emplace_back(ball_seen);
             other.position_m += other.velocity_mps * skill_.look_ahead_s;
-            situation.others.push_back(other);
         }
     }
     if (!found) return {};

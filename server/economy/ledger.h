@@ -106,6 +106,8 @@ class Ledger {
     bool is_settled(const PlayerKey& player, std::uint64_t request_id) const;
 
     Totals totals() const;
+    // Of the latest transaction; as long as it stays the same nobody's coins or tiers change.
+    std::uint64_t last_sequence() const { return next_sequence_ - 1; }
     std::size_t pending_count() const { return pending_.size(); }
     std::vector<Transaction> drain_transactions();
 

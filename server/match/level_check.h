@@ -9,7 +9,7 @@
 
 namespace fts::server {
 
-inline constexpr int kMaxAiBalls = 200;
+inline constexpr int kMaxAiBalls = 2000;
 inline constexpr int kMaxLevelFieldCoins = 200;
 inline constexpr std::size_t kMaxLevelNameBytes = 40;
 inline constexpr std::size_t kMaxLevelHintBytes = 200;

@@ -27,6 +27,9 @@ constexpr Tick ticks_of(double duration_s) {
 }
 
 inline constexpr std::size_t kMaxFieldCoins = 256;
+// A level's AI balls come in over several ticks, so that none of these lasts long: what a ball's
+// place costs grows with the balls that are there.
+inline constexpr std::size_t kMaxAiPlacedInTick = 32;
 inline constexpr std::size_t kMaxScoreLines = 1024;
 static_assert(kMaxScoreLines > game::kMaxPlayersPerArena);
 inline constexpr std::uint8_t kPaletteColours = 8;
@@ -134,6 +137,8 @@ struct Match::Impl {
     std::map<std::uint16_t, Ball> balls;
     std::vector<std::uint16_t> ball_of_slot;  // by BodyId::index, of the latest body there
     std::vector<Waiting> waiting_ai;
+    Tick ai_tried_in = 0;      // the tick in which ...
+    std::size_t ai_tried = 0;  // ... so many were given a try
     std::map<std::uint16_t, Coin> coins;
     Attribution attribution;
     ai::Memory memory;
@@ -146,6 +151,7 @@ struct Match::Impl {
 
     replication::Roster told_roster;
     Tick next_roster_tick = 0;
+    std::uint64_t told_sequence = 0;  // of the ledger, when wallets were last looked at
     std::vector<Outgoing> outgoing;
 
     MatchTotals totals;

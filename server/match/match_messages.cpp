@@ -41,11 +41,13 @@ void Match::Impl::tell_all(replication::ServerMessage message) {
 }
 
 void Match::Impl::send_due() {
+    const bool coins_moved = told_sequence != ledger.last_sequence();
+    told_sequence = ledger.last_sequence();
     for (auto& [id, player] : players) {
-        const replication::Wallet wallet = wallet_of(player);
-        if (!player.told_wallet || !same(*player.told_wallet, wallet)) {
+        if (coins_moved || !player.told_wallet) {
+            const replication::Wallet wallet = wallet_of(player);
+            if (!player.told_wallet || !same(*player.told_wallet, wallet)) tell(id, wallet);
             player.told_wallet = wallet;
-            tell(id, wallet);
         }
         if (player.strongest_hit && now >= player.next_report_tick) {
             tell(id, *player.strongest_hit);
@@ -54,6 +56,7 @@ void Match::Impl::send_due() {
         }
     }
     if (now < next_roster_tick) return;
+    next_roster_tick = now + kRosterIntervalTicks;
     replication::Roster present = roster();
     const auto& told = told_roster.players;
     const bool unchanged =
@@ -61,7 +64,6 @@ void Match::Impl::send_due() {
                    [](const auto& a, const auto& b) { return same(a, b); });
     if (unchanged) return;
     told_roster = present;
-    next_roster_tick = now + kRosterIntervalTicks;
     tell_all(std::move(present));
 }
 

@@ -23,7 +23,11 @@ void Match::Impl::earn(PlayerId id, int earned) {
 void Match::Impl::spawn_due() {
     if (phase != game::Phase::kCountdown && phase != game::Phase::kPlaying) return;
     bool delayed = false;
+    if (ai_tried_in != now) ai_tried = 0;
+    ai_tried_in = now;
     std::erase_if(waiting_ai, [&](const Waiting& waiting) {
+        if (ai_tried == kMaxAiPlacedInTick) return false;
+        ++ai_tried;
         const bool placed = spawn_ai(waiting);
         delayed |= !placed;
         return placed;
@@ -60,11 +64,20 @@ bool Match::Impl::spawn_player(PlayerId id, Player& player) {
 }
 
 std::optional<std::uint16_t> Match::Impl::place_ball(Ball ball) {
-    const auto clearance_m = [this](const Vec2d& point) {
+    struct Disc {
+        Vec2d centre_m;
+        double radius_m = 0.0;
+    };
+    std::vector<Disc> taken;
+    taken.reserve(balls.size());
+    for (const auto& [id, other] : balls) {
+        const auto body = world->body(other.body);
+        taken.push_back({body.position_m, body.radius_m});
+    }
+    const auto clearance_m = [&taken](const Vec2d& point) {
         double nearest_m = std::numeric_limits<double>::infinity();
-        for (const auto& [id, other] : balls) {
-            const auto body = world->body(other.body);
-            nearest_m = std::min(nearest_m, (body.position_m - point).norm() - body.radius_m);
+        for (const Disc& disc : taken) {
+            nearest_m = std::min(nearest_m, (disc.centre_m - point).norm() - disc.radius_m);
         }
         return nearest_m;
     };

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/ai/steering.h"
+#include "server/match/random.h"
 
 namespace fts::server::ai {
 namespace {
@@ -120,6 +121,32 @@ TEST(Steering, sees_the_hole_of_a_ring_as_an_edge) {
 TEST(Steering, does_not_dash_over_the_edge) {
     const auto here = situation(kDisc, {8.0, 0.0}, {});
     EXPECT_FALSE(kept_on_platform(here, {.thrust = {1.0, 0.0}, .dash = true}, 0.1).dash);
+}
+
+TEST(Behaviours, decide_the_same_when_they_see_only_what_matters_to_them) {
+    constexpr std::uint64_t kSeed = 11;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    Random random(kSeed);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<SeenBall> all;
+        for (std::uint16_t id = 2; id < 30; ++id) {
+            all.push_back(ball(id, {random.between(-8.0, 8.0), random.between(-8.0, 8.0)},
+                               random.below(5) == 0));
+            all.back().behaviour = static_cast<game::Behaviour>(random.below(6));
+        }
+        const Vec2d own{random.between(-8.0, 8.0), random.between(-8.0, 8.0)};
+        for (int i = 0; i <= static_cast<int>(game::Behaviour::kBruiser); ++i) {
+            const auto behaviour = static_cast<game::Behaviour>(i);
+            std::vector<SeenBall> some = all;
+            std::erase_if(some, [&](const SeenBall& other) { return !matters(behaviour, other); });
+            EXPECT_LT(some.size(), all.size());
+            const Intent seeing_all = decide(behaviour, situation(kRing, own, all));
+            const Intent seeing_some = decide(behaviour, situation(kRing, own, some));
+            EXPECT_EQ(seeing_all.thrust, seeing_some.thrust) << i;
+            EXPECT_EQ(seeing_all.brake, seeing_some.brake) << i;
+            EXPECT_EQ(seeing_all.dash, seeing_some.dash) << i;
+        }
+    }
 }
 
 }  // namespace

@@ -65,6 +65,17 @@ TEST(Spawn, near_a_point_of_the_edge_stays_on_the_platform) {
     }
 }
 
+TEST(Match, brings_the_balls_of_a_large_level_in_over_several_ticks_of_the_countdown) {
+    constexpr std::size_t kMany = 500;
+    MatchBench bench({quiet_level(1, physics::Disc{60.0}, static_cast<int>(kMany))}, 1, 16);
+    for (int person = 1; person <= 8; ++person) bench.join(person);
+    EXPECT_LT(bench.match.snapshot().balls.size(), 100u);
+    bench.tick(20);
+    EXPECT_EQ(bench.match.phase(), game::Phase::kCountdown);
+    EXPECT_EQ(bench.match.snapshot().balls.size(), kMany + 8);
+    EXPECT_EQ(bench.match.totals().spawns_delayed, 0u);
+}
+
 TEST(Match, lets_balls_wait_while_there_is_no_free_spot_and_never_overlaps_them) {
     MatchBench bench({quiet_level(1, physics::Disc{2.0}, 2)}, 1, 16);
     for (int person = 1; person <= 16; ++person) bench.join(person);
