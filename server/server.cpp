@@ -109,8 +109,8 @@ void Server::play_one_tick() {
 }
 
 void Server::apply_inputs(Arena& arena) {
-    for (const auto& [player, connection] : arena.players) {
-        arena.match.set_input(player, sessions_.at(connection).inputs.next());
+    for (const auto& [player, session] : arena.players) {
+        arena.match.set_input(player, session->inputs.next());
     }
 }
 
@@ -123,10 +123,10 @@ void Server::deliver(Arena& arena) {
         note_level(arena, outgoing);
         const std::vector<std::uint8_t> bytes = replication::encode(outgoing.message);
         if (!outgoing.to) {
-            for (const auto& [player, connection] : arena.players) pass_on(connection, bytes);
+            for (const auto& [player, session] : arena.players) pass_on(session->id, bytes);
         } else if (const auto found = arena.players.find(*outgoing.to);
                    found != arena.players.end()) {
-            pass_on(found->second, bytes);
+            pass_on(found->second->id, bytes);
         }
     }
     // What is reliable must not have gaps: who cannot take a message is told to come again.
@@ -148,9 +148,9 @@ void Server::publish_snapshot(Arena& arena) {
     arena.match.clear_hits();
     if (snapshot.tick <= arena.feed.newest_tick()) return;
     arena.feed.publish(std::move(snapshot));
-    for (const auto& [player, connection] : arena.players) {
-        send_snapshot(arena, sessions_.at(connection));
-    }
+    for (const auto& [player, session] : arena.players) send_snapshot(arena, *session);
+    stages_.enter(Stage::kSend);
+    transport_.flush();
 }
 
 void Server::send_snapshot(Arena& arena, Session& session) {

@@ -101,7 +101,7 @@ class Server {
         const int number;
         Match match;
         SnapshotFeed feed;
-        std::map<PlayerId, net::ConnectionId> players;
+        std::map<PlayerId, Session*> players;  // of sessions_, from `admit` to `leave_match`
     };
     // A purchase that the player hears of once everything up to `sequence` is durable.
     struct Answer {

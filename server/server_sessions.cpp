@@ -203,7 +203,7 @@ void Server::admit(Session& session, const PlayerRecord& record, double now_s) {
     session.arena = *place;
     session.player = *player;
     session.enter(Session::State::kPlaying, now_s);
-    arena.players[*player] = session.id;
+    arena.players[*player] = &session;
     if (record.name != session.name) renames_.push_back({session.key, session.name});
     ++joins_;
     log_(LogLevel::kInfo, session.who() + " joined arena " + std::to_string(*place) + " with " +

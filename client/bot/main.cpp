@@ -4,6 +4,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -112,6 +113,7 @@ void play(bot::Crowd& crowd, double seconds, bot::Report& report) {
     }
     report.seconds = now_s;
     report.loop_mean_hz = now_s > 0.0 ? static_cast<double>(rounds) / now_s : 0.0;
+    report.cpu_s = double(std::clock()) / CLOCKS_PER_SEC;
     report.tallies = crowd.tallies();
 }
 

@@ -111,10 +111,11 @@ nlohmann::ordered_json metrics_of(std::span<const Tally> tallies) {
 
 std::string as_tables(const Report& report) {
     char summary[160];
-    std::snprintf(summary, sizeof summary,
-                  "%zu %s played for %.1f s, updated at %.0f Hz (longest gap %.0f ms)\n",
-                  report.tallies.size(), report.tallies.size() == 1 ? "bot" : "bots",
-                  report.seconds, report.loop_mean_hz, report.loop_longest_gap_s * 1e3);
+    std::snprintf(
+        summary, sizeof summary,
+        "%zu %s played for %.1f s, updated at %.0f Hz (longest gap %.0f ms), CPU %.1f s\n",
+        report.tallies.size(), report.tallies.size() == 1 ? "bot" : "bots", report.seconds,
+        report.loop_mean_hz, report.loop_longest_gap_s * 1e3, report.cpu_s);
     const bool anybody_joined = std::ranges::any_of(report.tallies, &Tally::joined);
     std::string text = anybody_joined ? summary : "No bot could join.\n";
     for (const auto& columns : kTables) {
@@ -131,6 +132,7 @@ std::string as_json(const Report& report) {
     nlohmann::ordered_json root;
     root["seconds"] = report.seconds;
     root["passed"] = report.passed;
+    root["cpu_s"] = report.cpu_s;
     root["loop"] = {{"mean_hz", report.loop_mean_hz},
                     {"longest_gap_ms", report.loop_longest_gap_s * 1e3}};
     root["total"] = metrics_of(report.tallies);

@@ -23,6 +23,7 @@ struct Report {
     // How often the bots were updated. Far below 120 Hz this machine was too slow for so many bots,
     // and what they measured of the network says little.
     double loop_mean_hz = 0.0;
+    double cpu_s = 0.0;  // of the whole process
     double loop_longest_gap_s = 0.0;
     std::vector<Tally> tallies;
     std::vector<Verdict> verdicts;

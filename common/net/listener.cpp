@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <map>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "common/net/connection.h"
@@ -38,7 +38,7 @@ struct Listener::Impl {
     CookieJar cookies;
     DropCounters drops = drop::make_counters();
     HalfOpenTable half_open;
-    std::map<ConnectionId, Established> sessions;
+    std::unordered_map<ConnectionId, Established> sessions;
     std::vector<Event> events;
     std::optional<std::uint16_t> foreign_version;
     ConnectionId last_id = 0;
