@@ -14,8 +14,8 @@ constexpr std::uint32_t kFewestBuckets = 64;
 constexpr double kEighthsInRing = 32.0;
 constexpr std::size_t kTimesSampled = 256;
 // Stretches are counted up to here; all later times are in this one.
-constexpr std::uint64_t kLastStretch = std::uint64_t{1} << 62;
-constexpr std::uint64_t kNoStretch = ~std::uint64_t{0};
+constexpr std::int64_t kLastStretch = std::int64_t{1} << 62;
+constexpr std::int64_t kNoStretch = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
@@ -26,7 +26,8 @@ void BucketCalendar::reset(std::uint32_t slots) {
     first_.assign(std::size_t{buckets} + 1, kNobody);
     occupied_.assign(buckets / 64, 0);
     sample_s_.reserve(kTimesSampled + 1);
-    present_.reset(slots);
+    many_.reset(slots);
+    few_count_ = 0;
     mask_ = buckets - 1;
     entries_ = 0;
     begin_s_ = stretches_per_s_ = 0.0;
@@ -50,22 +51,20 @@ void BucketCalendar::remove(std::uint32_t body) {
 }
 
 // Before the first `top` there are no stretches, and all are far.
-std::uint64_t BucketCalendar::stretch_of(double time_s) const {
-    if (stretches_per_s_ == 0.0) return kLastStretch;
-    const double stretch = (time_s - begin_s_) * stretches_per_s_;
-    if (!(stretch > 0.0)) return 0;
+std::int64_t BucketCalendar::stretch_of(double time_s) const {
+    const double stretch = std::max(0.0, (time_s - begin_s_) * stretches_per_s_);
     constexpr auto kLast = static_cast<double>(kLastStretch);
-    return stretch < kLast ? static_cast<std::uint64_t>(stretch) : kLastStretch;
+    if (!(stretch < kLast) || stretches_per_s_ == 0.0) return kLastStretch;
+    return static_cast<std::int64_t>(stretch);
 }
 
 // The body is in no list, or in one that is being emptied.
 void BucketCalendar::place(std::uint32_t body) {
     const double time_s = nodes_[body].time_s;
-    const std::uint64_t stretch = stretch_of(time_s);
-    if (stretch <= now_) {
-        nodes_[body].before = kPresent;
-        present_.set(body, time_s);
-    } else if (stretch - now_ <= mask_) {
+    const std::int64_t stretch = stretch_of(time_s), ahead = stretch - now_;
+    if (ahead <= 0) {
+        place_now({time_s, body});
+    } else if (ahead <= static_cast<std::int64_t>(mask_)) {
         const std::uint32_t bucket = static_cast<std::uint32_t>(stretch) & mask_;
         link(bucket, body);
         occupied_[bucket / 64] |= std::uint64_t{1} << (bucket % 64);
@@ -75,12 +74,35 @@ void BucketCalendar::place(std::uint32_t body) {
     }
 }
 
+void BucketCalendar::place_now(const Entry& entry) {
+    if (few_count_ < kMostFew && many_.empty()) {
+        std::uint32_t at = few_count_++;
+        for (; at > 0 && few_[at - 1] < entry; --at) few_[at] = few_[at - 1];
+        few_[at] = entry;
+        nodes_[entry.body].before = kAmongFew;
+        return;
+    }
+    for (; few_count_ > 0; --few_count_) {
+        const Entry& other = few_[few_count_ - 1];
+        nodes_[other.body].before = kAmongMany;
+        many_.set(other.body, other.time_s);
+    }
+    nodes_[entry.body].before = kAmongMany;
+    many_.set(entry.body, entry.time_s);
+}
+
+void BucketCalendar::take_out_of_few(std::uint32_t body) {
+    std::uint32_t at = --few_count_;
+    Entry next = few_[at];
+    while (next.body != body) std::swap(next, few_[--at]);
+}
+
 void BucketCalendar::take_out(std::uint32_t body) {
     Node& node = nodes_[body];
     if (node.before == kAbsent) return;
     --entries_;
-    if (node.before == kPresent) {
-        present_.remove(body);
+    if (node.before == kAmongFew || node.before == kAmongMany) {
+        node.before == kAmongFew ? take_out_of_few(body) : many_.remove(body);
         node.before = kAbsent;
         return;
     }
@@ -108,8 +130,8 @@ void BucketCalendar::link(std::uint32_t bucket, std::uint32_t body) {
 void BucketCalendar::advance() {
     if (entries_ == 0) return;
     if (stretches_per_s_ == 0.0) spread();
-    while (present_.empty()) {
-        std::uint64_t next = next_occupied();
+    while (few_count_ == 0 && many_.empty()) {
+        std::int64_t next = next_occupied();
         if (next >= nearest_far_) {
             fetch_far();
             next = next_occupied();
@@ -123,16 +145,27 @@ void BucketCalendar::advance() {
         now_ = next;
         const std::uint32_t bucket = static_cast<std::uint32_t>(now_) & mask_;
         for (std::uint32_t body = first_[bucket]; body != kNobody; body = nodes_[body].after) {
-            nodes_[body].before = kPresent;
-            present_.set(body, nodes_[body].time_s);
+            place_now({nodes_[body].time_s, body});
         }
         first_[bucket] = kNobody;
         occupied_[bucket / 64] &= ~(std::uint64_t{1} << (bucket % 64));
     }
+    look_beyond();
+}
+
+void BucketCalendar::look_beyond() {
+    has_gone_on_ = true;
+    soon_count_ = 0;
+    const std::int64_t next = next_occupied();
+    if (next == kNoStretch) return;
+    std::uint32_t body = first_[static_cast<std::uint32_t>(next) & mask_];
+    for (; body != kNobody && soon_count_ < kMostSoon; body = nodes_[body].after) {
+        soon_[soon_count_++] = body;
+    }
 }
 
 // The stretch of the next bucket that is not empty; kNoStretch when all are.
-std::uint64_t BucketCalendar::next_occupied() const {
+std::int64_t BucketCalendar::next_occupied() const {
     const auto words = static_cast<std::uint32_t>(occupied_.size());
     const std::uint32_t begin = static_cast<std::uint32_t>(now_ + 1) & mask_;
     std::uint64_t word = occupied_[begin / 64] & (~std::uint64_t{0} << (begin % 64));
@@ -175,7 +208,8 @@ void BucketCalendar::spread() {
     nearest_far_ = kNoStretch;
     std::fill(first_.begin(), first_.end(), kNobody);
     std::fill(occupied_.begin(), occupied_.end(), 0);
-    present_.clear();
+    few_count_ = 0;
+    many_.clear();
     for (std::uint32_t body = 0; body < nodes_.size(); ++body) {
         if (nodes_[body].before != kAbsent) place(body);
     }

@@ -4,16 +4,18 @@
 //
 // A queue of bounded increment (Paul, "A complexity O(1) priority queue for event driven molecular
 // dynamics simulations", 2007): a ring of buckets, each of them a short stretch of time and an
-// unordered list, and a heap of what is in the present bucket. Times beyond the ring wait in one
-// more list, which is gone through once in at least half a round. How long a bucket is suits the
-// times that are there at `rebase`, at the first `top` after `reset`, and when the ring has run
-// empty.
+// unordered list; what is in the present bucket is kept in order, and in a heap if it is many.
+// Times beyond the ring wait in one more list, which is gone through once in at least half a round.
+// How long a bucket is suits the times that are there at `rebase`, at the first `top` after
+// `reset`, and when the ring has run empty.
 //
 // Not thread-safe. No allocation but in `reset`.
 #pragma once
 
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "common/physics/calendar.h"
@@ -33,9 +35,16 @@ class BucketCalendar {
 
     bool empty() const { return entries_ == 0; }
     const Entry& top() {
-        if (present_.empty()) advance();
-        return present_.top();
+        if (few_count_ > 0) return few_[few_count_ - 1];
+        if (many_.empty()) advance();
+        return few_count_ > 0 ? few_[few_count_ - 1] : many_.top();
     }
+
+    // What `top` found when it went on to another stretch of time, so that it can be made ready:
+    // entries of that stretch, and bodies of the next one, in no order. Perhaps not all of them.
+    bool has_gone_on() { return std::exchange(has_gone_on_, false); }
+    std::span<const Entry> present() const { return {few_, few_count_}; }
+    std::span<const std::uint32_t> soon() const { return {soon_, soon_count_}; }
 
     // All times become earlier by `shift_s`. Linear in the number of bodies.
     void rebase(double shift_s);
@@ -50,17 +59,23 @@ class BucketCalendar {
     };
     static_assert(sizeof(Node) == 16);
     static constexpr std::uint32_t kNobody = 0xffffffff;
-    static constexpr std::uint32_t kPresent = 0xfffffffe;  // in place of `before`: in the heap
-    static constexpr std::uint32_t kAbsent = 0xfffffffd;
+    static constexpr std::uint32_t kAmongFew = 0xfffffffe;  // in place of `before`
+    static constexpr std::uint32_t kAmongMany = 0xfffffffd;
+    static constexpr std::uint32_t kAbsent = 0xfffffffc;
     static constexpr std::uint32_t kFirstOf = 0x80000000;  // a flag: the rest is a bucket
+    static constexpr std::uint32_t kMostFew = 24;
+    static constexpr std::uint32_t kMostSoon = 8;
 
-    std::uint64_t stretch_of(double time_s) const;
+    std::int64_t stretch_of(double time_s) const;
     std::uint32_t far() const { return mask_ + 1; }
     void place(std::uint32_t body);
+    void place_now(const Entry& entry);
     void take_out(std::uint32_t body);
+    void take_out_of_few(std::uint32_t body);
     void link(std::uint32_t bucket, std::uint32_t body);
     void advance();
-    std::uint64_t next_occupied() const;
+    void look_beyond();
+    std::int64_t next_occupied() const;
     void fetch_far();
     void spread();
     double suitable_width_s(double first_s);
@@ -69,13 +84,20 @@ class BucketCalendar {
     std::vector<std::uint32_t> first_;     // by bucket; the last one is of the far ones
     std::vector<std::uint64_t> occupied_;  // a bit for each bucket
     std::vector<double> sample_s_;
-    Calendar present_;  // of the stretch now_ and all before it
+    // Of the stretch now_ and all before it: the few have the earliest at the end, and are none
+    // while there are many.
+    Entry few_[kMostFew];
+    std::uint32_t few_count_ = 0;
+    Calendar many_;
+    std::uint32_t soon_[kMostSoon] = {};
+    std::uint32_t soon_count_ = 0;
+    bool has_gone_on_ = false;
     std::uint32_t entries_ = 0;
     std::uint32_t mask_ = 0;
     double begin_s_ = 0.0;  // of stretch 0
     double stretches_per_s_ = 0.0;
-    std::uint64_t now_ = 0;
-    std::uint64_t nearest_far_ = 0;  // no far one is in an earlier stretch
+    std::int64_t now_ = 0;
+    std::int64_t nearest_far_ = 0;  // no far one is in an earlier stretch
 };
 
 }  // namespace fts::physics

@@ -35,13 +35,12 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
     free_apart_ = kNobody;
     calendar_.reset(bodies.slots());
     found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kGatherSpare);
-    index_of_.resize(bodies.ids.size());
     body_at_.resize(bodies.slots());
     living_.clear();
     for (std::uint32_t body = 0; body < bodies.ids.size(); ++body) {
         const std::uint32_t index = bodies.ids[body].index;
         living_.push_back(index);
-        index_of_[body] = index;
+        prospects_[body].id = bodies.ids[body];
         body_at_[index] = body;
         Flight& flight = flights_[body];
         flight.position_m = bodies.position_m[index];
@@ -220,15 +219,15 @@ template <typename Scalar>
 void Coasting<Scalar>::remove(std::uint32_t body) {
     cells_.take_out(body, flights_[body].cell[0], flights_[body].cell[1]);
     forget_apart(body);
-    calendar_.remove(index_of_[body]);
+    calendar_.remove(index_of(body));
     ++flights_[body].events;
-    living_.erase(std::lower_bound(living_.begin(), living_.end(), index_of_[body]));
+    living_.erase(std::lower_bound(living_.begin(), living_.end(), index_of(body)));
 }
 
 template <typename Scalar>
 void Coasting<Scalar>::enter_in_calendar(std::uint32_t body) {
     const Prospect& prospect = prospects_[body];
-    calendar_.set(index_of_[body], std::min(prospect.meeting_s, prospect.border_s));
+    calendar_.set(index_of(body), std::min(prospect.meeting_s, prospect.border_s));
 }
 
 template <typename Scalar>
@@ -275,11 +274,27 @@ void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
     }
 }
 
+// Into the cache: what is due soon itself, and where it will look of what is due now.
+template <typename Scalar>
+void Coasting<Scalar>::fetch_upcoming() {
+    const auto fetch_body = [&](std::uint32_t body) {
+        __builtin_prefetch(&flights_[body], 1);
+        __builtin_prefetch(&prospects_[body], 1);
+    };
+    for (const std::uint32_t index : calendar_.soon()) fetch_body(body_at_[index]);
+    for (const BucketCalendar::Entry& entry : calendar_.present()) {
+        const std::uint32_t body = body_at_[entry.body], with = prospects_[body].with;
+        if (with != kNobody) fetch_body(with);
+        cells_.fetch(flights_[body].cell[0], flights_[body].cell[1]);
+    }
+}
+
 template <typename Scalar>
 template <typename Has>
 Due Coasting<Scalar>::next_as() {
     for (;;) {
         const BucketCalendar::Entry first = calendar_.top();
+        if (calendar_.has_gone_on()) fetch_upcoming();
         if (!(first.time_s <= end_s_)) return {};
         if (turns_left_ == 0) return {Happening::kUnfinished, now_s_, 0, 0};
         --turns_left_;
@@ -349,47 +364,47 @@ void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best)
     });
 }
 
+// Whom it meets first, if before the best that is known.
 template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image,
                                Meeting& best) {
     const Flight& self = flights_[body];
     const Vec shift_m = shift_of(image);
-    for (std::uint32_t bits = kernels_->may_meet(about, self, shift_m); bits != 0;
-         bits &= bits - 1) {
-        const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
-        const Scalar radius_m = Has::kEqualRadii ? self.radius_m : about.radius_m[k];
-        consider(body, about.body[k], image, {self, about, k, shift_m}, self.radius_m + radius_m,
-                 best);
-    }
+    const auto consider_all = [&](std::uint32_t bits) {
+        for (; bits != 0; bits &= bits - 1) {
+            const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+            const Scalar radius_m = Has::kEqualRadii ? self.radius_m : about.radius_m[k];
+            consider({self, about, k, shift_m}, self.radius_m + radius_m, body, about.body[k],
+                     image, best);
+        }
+    };
+    kernels_->look_ahead(about, self, shift_m, now_s_, ahead_);
+    consider_all(ahead_.first);
+    consider_all(kernels_->until(ahead_, about.count, best.time_s) & ~ahead_.first);
 }
 
-// Whether two that may meet do so before the best that is known.
+// Whether it meets one of those about it before the best that is known.
 template <typename Scalar>
-void Coasting<Scalar>::consider(std::uint32_t body, std::uint32_t other, Image image,
-                                const Approach<Scalar>& approach, Scalar reach_m,
+void Coasting<Scalar>::consider(const Approach<Scalar>& approach, Scalar reach_m,
+                                std::uint32_t body, std::uint32_t other, Image image,
                                 Meeting& best) const {
     constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
     constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
-    const Scalar reach_squared = reach_m * reach_m, rate = approach.rate();
-    const Scalar apart_squared = approach.distance_squared();
-    // It takes at least the time of a head-on approach. Times are as fine as the clock.
-    const double clock_s = best.time_s * std::numeric_limits<double>::epsilon();
-    const auto known_best = static_cast<Scalar>((best.time_s - approach.from_s) + clock_s);
-    if (apart_squared - reach_squared > Scalar(-2) * kFilterSlack<Scalar> * rate * known_best) {
-        return;
-    }
     const Scalar wait_s = time_until_contact<Scalar>({approach.x_m, approach.y_m},
                                                      {approach.x_mps, approach.y_mps}, reach_m);
     const double time_s = std::max(now_s_, approach.from_s + static_cast<double>(wait_s));
-    if (time_s > best.time_s || (time_s == best.time_s && !is_before(other, best.with))) return;
+    if (time_s > best.time_s || time_s == kNever<double>) return;
+    if (time_s == best.time_s && !is_before(other, best.with)) return;
     if (is_immovable(body) && is_immovable(other)) return;
     // Those kept apart touch when they are left together, and approach by round-off only.
-    if (apart_squared < kNear * reach_squared ||
-        rate * rate < kBarely * apart_squared *
-                          (flights_[body].velocity_mps.squaredNorm() +
-                           flights_[other].velocity_mps.squaredNorm())) {
-        if (are_kept_apart(body, other, image)) return;
+    const Scalar apart_squared = approach.distance_squared(), rate = approach.rate();
+    if ((apart_squared < kNear * reach_m * reach_m ||
+         rate * rate < kBarely * apart_squared *
+                           (flights_[body].velocity_mps.squaredNorm() +
+                            flights_[other].velocity_mps.squaredNorm())) &&
+        are_kept_apart(body, other, image)) {
+        return;
     }
     best = {time_s, other};
 }
@@ -411,18 +426,19 @@ void Coasting<Scalar>::expect_border(std::uint32_t body) {
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
         const Scalar speed = flight.velocity_mps[axis], position = flight.position_m[axis];
         if (speed == Scalar(0)) continue;
-        const bool up = speed > Scalar(0);
-        const std::uint32_t cell = flight.cell[axis], side = 2 * axis + (up ? 1U : 0U);
-        const bool outermost = cell == (up ? cells_.last(axis) : 0);
-        if (Has::kPeriodic || !outermost) {
-            const Scalar edge = cells_.edge_m(axis, up ? cell + 1 : cell);
-            offer(time_until_wall(up ? edge - position : position - edge, std::abs(speed)),
-                  Border::kCell, side);
+        const std::uint32_t up = speed > Scalar(0) ? 1 : 0, side = 2 * axis + up;
+        const std::uint32_t cell = flight.cell[axis];
+        // As time_until_wall does, without asking for the direction.
+        const auto wait_s = [&](Scalar way_m) {
+            return std::max(Scalar(0), std::copysign(Scalar(1), speed) * way_m) / std::abs(speed);
+        };
+        if (Has::kPeriodic || cell != up * cells_.last(axis)) {
+            offer(wait_s(cells_.edge_m(axis, cell + up) - position), Border::kCell, side);
         } else if (Has::kWalls && !is_immovable(body) &&
                    (prospect.sides_kept_off >> side & 1U) == 0) {
-            const Scalar gap = up ? (model_.walls->max_m[axis] - flight.radius_m) - position
-                                  : position - (model_.walls->min_m[axis] + flight.radius_m);
-            offer(time_until_wall(gap, std::abs(speed)), Border::kWall, side);
+            const Scalar nearest = up == 1 ? model_.walls->max_m[axis] - flight.radius_m
+                                           : model_.walls->min_m[axis] + flight.radius_m;
+            offer(wait_s(nearest - position), Border::kWall, side);
         }
     }
     if constexpr (Has::kPlatform) {

@@ -93,7 +93,8 @@ class Coasting {
     double flown_s(std::uint32_t body) const { return now_s_ - flights_[body].since_s; }
     double last_hit_ago_s(std::uint32_t body) const { return now_s_ - prospects_[body].hit_s; }
 
-    std::uint32_t index_of(std::uint32_t body) const { return index_of_[body]; }
+    std::uint32_t index_of(std::uint32_t body) const { return prospects_[body].id.index; }
+    BodyId id_of(std::uint32_t body) const { return prospects_[body].id; }
     std::uint32_t body_at(std::uint32_t index) const { return body_at_[index]; }
     const Flight& flight(std::uint32_t body) const { return flights_[body]; }
     Scalar mass_kg(std::uint32_t body) const { return prospects_[body].mass_kg; }
@@ -112,21 +113,18 @@ class Coasting {
     void keep_apart(std::uint32_t a, std::uint32_t b);
     void keep_off_wall(std::uint32_t body, std::uint32_t side);
     bool is_immovable(std::uint32_t body) const { return std::isinf(prospects_[body].mass_kg); }
-    // Whether no cell is beyond that of the body on a side: all that touch the wall there are such.
-    bool is_outermost(std::uint32_t body, std::uint32_t side) const {
-        const std::uint32_t axis = side / 2;
-        return flights_[body].cell[axis] == (side % 2 == 0 ? 0 : cells_.last(axis));
-    }
+    // Whether no cell is beyond that of the body on some side: all that touch a wall are such.
+    bool is_at_border(std::uint32_t body) const { return is_at_border(flights_[body]); }
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
-    // Calls visit(other, separation) for everybody but `partner` whose distance to `body`, now, is
-    // below `factor` times their reach, once for each image, in no order. Only of those in the
-    // cells about it: `factor` is hardly more than 1. What is seen is kept for predict_as_seen, as
-    // one of the two sights of an event.
-    template <typename Visit>
-    void look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner, Scalar factor,
-                     Visit&& visit);
+    // Whether touches(other, separation) is true of anybody but `partner` whose distance to `body`,
+    // now, is below `factor` times their reach. Only of those in the cells about it: `factor` is
+    // hardly more than 1. What is seen is kept for predict_as_seen, as one of the two sights of an
+    // event.
+    template <typename Touches>
+    bool look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner, Scalar factor,
+                     Touches&& touches);
     // The same as `predict`, after look_around in this event, in which nothing happened but to the
     // body and its partner, who are kept apart.
     void predict_as_seen(std::uint32_t sight, std::uint32_t body) {
@@ -154,6 +152,7 @@ class Coasting {
         std::uint32_t apart = kNobody;  // the first in its list of those it is kept apart from
         std::uint32_t turns_x = 0;      // how often it went round a periodic box, modulo 2^32
         std::uint32_t turns_y = 0;
+        BodyId id;
         Border border = Border::kNone;
         std::uint8_t side = 0;
         std::uint8_t sides_kept_off = 0;  // a bit for each
@@ -209,9 +208,10 @@ class Coasting {
     }
     void rebase();
     bool is_before(std::uint32_t body, std::uint32_t other) const {
-        return other == kNobody || index_of_[body] < index_of_[other];
+        return other == kNobody || index_of(body) < index_of(other);
     }
     void enter_in_calendar(std::uint32_t body);
+    void fetch_upcoming();
 
     template <typename Has>
     Due next_as();
@@ -227,8 +227,8 @@ class Coasting {
     void predict_as_seen_as(std::uint32_t sight, std::uint32_t body);
     template <typename Has>
     void look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image, Meeting& best);
-    void consider(std::uint32_t body, std::uint32_t other, Image image,
-                  const Approach<Scalar>& approach, Scalar reach_m, Meeting& best) const;
+    void consider(const Approach<Scalar>& approach, Scalar reach_m, std::uint32_t body,
+                  std::uint32_t other, Image image, Meeting& best) const;
     // Calls visit(about) for those in found_ up to `end`, as they are since a moment at which a
     // flight of `body` begins.
     template <typename Visit>
@@ -268,7 +268,6 @@ class Coasting {
 
     std::vector<Flight> flights_;  // by body, as are the next
     std::vector<Prospect> prospects_;
-    std::vector<std::uint32_t> index_of_;
     std::vector<std::uint32_t> body_at_;  // by index, as is the calendar
     std::vector<std::uint32_t> living_;   // indices, ascending
     std::uint32_t rebases_to_renumber_ = 0;
@@ -282,6 +281,7 @@ class Coasting {
     EventCells<Scalar> cells_;
     std::vector<std::uint32_t> found_;  // by cells_.find
     Neighbours<Scalar> about_;
+    Ahead<Scalar> ahead_;
     Sight sights_[2];
     std::vector<Near> near_;
     std::vector<Vec> sample_m_;
@@ -293,7 +293,7 @@ void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
     near_.clear();
     find<true>(flights_[body], View(), [&](const std::uint32_t* end, Image image) {
         for (const std::uint32_t* at = found_.data(); at != end; ++at)
-            near_.push_back({index_of_[*at], image});
+            near_.push_back({index_of(*at), image});
     });
     std::sort(near_.begin(), near_.end());
     const Vec position = position_m(body);
@@ -304,25 +304,27 @@ void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
 }
 
 template <typename Scalar>
-template <typename Visit>
-void Coasting<Scalar>::look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner,
-                                   Scalar factor, Visit&& visit) {
+template <typename Touches>
+bool Coasting<Scalar>::look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner,
+                                   Scalar factor, Touches&& touches) {
     Sight& seen = sights_[sight];
     const Flight& self = flights_[body];
     const Vec position = position_m(body);
     std::uint32_t looks = 0;
+    bool any = false;
     find<true>(self, View(), [&](std::uint32_t* end, Image image) {
         const Vec shift_m = shift_of(image);
         gather(end, body, partner, now_s_, seen.about, [&](const Neighbours<Scalar>& about) {
             ++looks;
             std::uint32_t close = kernels_->close(about, position - shift_m, self.radius_m, factor);
-            for (; close != 0; close &= close - 1) {
+            for (; close != 0 && !any; close &= close - 1) {
                 const std::uint32_t other = about.body[std::countr_zero(close)];
-                visit(other, Vec((position - position_m(other)) - shift_m));
+                any = touches(other, Vec((position - position_m(other)) - shift_m));
             }
         });
     });
     seen.is_whole = looks == 1 && !(model_.periodic && is_at_border(self));
+    return any;
 }
 
 template <typename Scalar>
@@ -345,11 +347,9 @@ void Coasting<Scalar>::find(const Flight& self, const View& view, Visit&& visit)
         find_across(self, view, visit);
         return;
     }
-    std::uint32_t* end = found_.data();
-    for (std::uint32_t y = view.y0; y <= view.y1; ++y) {
-        end = cells_.find(self.cell[0] + view.x0, self.cell[1] + y, view.x1 - view.x0 + 1, end);
-    }
-    visit(end, Image());
+    visit(cells_.find(self.cell[0] + view.x0, self.cell[1] + view.y0, view.x1 - view.x0 + 1,
+                      view.y1 - view.y0 + 1, found_.data()),
+          Image());
 }
 
 template <typename Scalar>
@@ -369,7 +369,8 @@ void Coasting<Scalar>::find_across(const Flight& self, const View& view, Visit&&
         const Place row = place(1, y);
         for (std::uint32_t x = view.x0; x <= view.x1; ++x) {
             const Place column = place(0, x);
-            std::uint32_t* const end = cells_.find(column.cell + 1, row.cell + 1, 1, found_.data());
+            std::uint32_t* const end =
+                cells_.find(column.cell + 1, row.cell + 1, 1, 1, found_.data());
             if (end != found_.data()) visit(end, Image{column.image, row.image});
         }
     }
@@ -393,11 +394,9 @@ void Coasting<Scalar>::renumber() {
         new_body_[old_body] = body;
         flights_[body] = old_flights_[old_body];
         prospects_[body] = old_prospects_[old_body];
-        places_[body].body = index_of_[old_body];
     }
     for (std::uint32_t body = 0; body < bodies; ++body) {
-        index_of_[body] = places_[body].body;
-        body_at_[index_of_[body]] = body;
+        body_at_[index_of(body)] = body;
         std::uint32_t& with = prospects_[body].with;
         if (with != kNobody) with = new_body_[with];
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #if defined(__SSE2__)
-#include <emmintrin.h>
+#include <immintrin.h>
 #endif
 
 #include "common/physics/crowd_range.h"
@@ -34,6 +34,22 @@ std::uint32_t* copy_places(const Cell& cell, std::uint32_t* to) {
     return to;
 #endif
 }
+
+#if defined(__x86_64__)
+// The same of three cells in a row; nothing, where one of them has a list.
+template <typename Cell>
+__attribute__((target("avx512f,avx512vl,avx512dq,popcnt"))) std::uint32_t* copy_three(
+    const Cell* cells, std::uint32_t* to) {
+    constexpr __mmask16 kTwelve = 0x0fff;
+    const __m512i all = _mm512_maskz_loadu_epi32(kTwelve, cells);
+    const __mmask16 not_bodies = _mm512_movepi32_mask(all);
+    const __mmask16 lists = _mm512_mask_cmpneq_epi32_mask(not_bodies, all, _mm512_set1_epi32(-1));
+    if (lists != 0) return nullptr;
+    const auto bodies = static_cast<__mmask16>(~not_bodies & kTwelve);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bodies, all));
+    return to + std::popcount(static_cast<unsigned>(bodies));
+}
+#endif
 
 }  // namespace
 
@@ -130,14 +146,36 @@ void EventCells<Scalar>::take_out(std::uint32_t body, std::uint32_t x, std::uint
 
 template <typename Scalar>
 std::uint32_t* EventCells<Scalar>::find(std::uint32_t x, std::uint32_t y, std::uint32_t columns,
-                                        std::uint32_t* found) const {
-    const Cell* cell = cells_.data() + index_of(x, y);
-    for (const Cell* const end = cell + columns; cell != end; ++cell) {
-        found = copy_places(*cell, found);
-        if (!has_list(*cell)) continue;
-        for (std::uint32_t body = cell->place[kPlaces - 1] & ~kListed; body != kNobody;
-             body = next_[body]) {
-            *found++ = body;
+                                        std::uint32_t rows, std::uint32_t* found) const {
+    const Cell* const row = cells_.data() + index_of(x, y);
+    return columns == 3   ? find_in<3>(row, rows, found)
+           : columns == 2 ? find_in<2>(row, rows, found)
+                          : find_in<1>(row, rows, found);
+}
+
+template <typename Scalar>
+template <std::uint32_t kColumns>
+std::uint32_t* EventCells<Scalar>::find_in(const Cell* row, std::uint32_t rows,
+                                           std::uint32_t* found) const {
+    for (const Cell* const end = row + std::size_t{rows} * stride_; row != end; row += stride_) {
+#if defined(__x86_64__)
+        if (kColumns == 3 && has_avx512_) {
+            if (std::uint32_t* const copied = copy_three(row, found); copied != nullptr) {
+                found = copied;
+                continue;
+            }
+        }
+#endif
+        bool any_list = false;
+        for (std::uint32_t column = 0; column < kColumns; ++column) {
+            found = copy_places(row[column], found);
+            any_list |= has_list(row[column]);
+        }
+        if (!any_list) continue;
+        for (std::uint32_t column = 0; column < kColumns; ++column) {
+            if (!has_list(row[column])) continue;
+            std::uint32_t body = row[column].place[kPlaces - 1] & ~kListed;
+            for (; body != kNobody; body = next_[body]) *found++ = body;
         }
     }
     return found;

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "common/physics/simd_level.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
@@ -47,14 +48,23 @@ class EventCells {
     void put_in(std::uint32_t body, std::uint32_t x, std::uint32_t y);
     void take_out(std::uint32_t body, std::uint32_t x, std::uint32_t y);
 
-    // Those in `columns` <= 3 cells from (x, y) on, in no order. `found` has room for them, and for
-    // kSpare more that are written over. Returns one past the last.
+    // Those in `columns` <= 3 cells from (x, y) on, of each of so many rows, in no order. `found`
+    // has room for them, and for kSpare more that are written over. Returns one past the last.
     //
     // Around the grid is a ring of cells in which nobody ever is: coordinates are counted from
     // there, which makes them one more than those of `cell_of`.
-    static constexpr std::uint32_t kSpare = 4;
-    std::uint32_t* find(std::uint32_t x, std::uint32_t y, std::uint32_t columns,
+    static constexpr std::uint32_t kSpare = 16;
+    std::uint32_t* find(std::uint32_t x, std::uint32_t y, std::uint32_t columns, std::uint32_t rows,
                         std::uint32_t* found) const;
+
+    // The cell (x, y), counted as those of `cell_of`, and those about it will be asked for.
+    void fetch(std::uint32_t x, std::uint32_t y) const {
+        for (std::uint32_t row = 0; row < 3; ++row) {
+            const Cell* const cell = cells_.data() + index_of(x, y + row);
+            __builtin_prefetch(cell);
+            __builtin_prefetch(cell + 2);
+        }
+    }
 
   private:
     static constexpr std::uint32_t kPlaces = 4;
@@ -75,6 +85,8 @@ class EventCells {
         Range fitted;
     };
 
+    template <std::uint32_t kColumns>
+    std::uint32_t* find_in(const Cell* row, std::uint32_t rows, std::uint32_t* found) const;
     static bool has_list(const Cell& cell) {
         return cell.place[kPlaces - 1] >= kListed && cell.place[kPlaces - 1] != kNobody;
     }
@@ -85,6 +97,7 @@ class EventCells {
     void divide(Axis& axis, const Range& range, Scalar width_m, std::size_t bodies);
 
     std::array<Axis, 2> axis_;
+    bool has_avx512_ = best_simd_level() >= SimdLevel::kAvx512;
     std::uint32_t stride_ = 3;
     std::vector<Cell> cells_;
     std::vector<std::uint32_t> next_;  // by body, in such a list

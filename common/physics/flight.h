@@ -1,9 +1,7 @@
 // A body in straight flight, and those about it.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "common/physics/scene.h"
 
@@ -43,12 +41,6 @@ struct Neighbours {
     alignas(64) std::uint32_t body[kMost] = {};
 };
 
-// By how many units of round-off a pair may seem to miss, or to meet too late, and still be
-// computed exactly.
-template <typename Scalar>
-inline constexpr Scalar kFilterSlack = Scalar(1) +
-                                       Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-
 // Of a flight and one of those about it since the later one began, the first less the second.
 template <typename Scalar>
 struct Approach {
@@ -66,18 +58,9 @@ struct Approach {
         y_m = (here.y() - about.y_m[k]) - shift_m.y();
     }
     Scalar rate() const { return x_m * x_mps + y_m * y_mps; }
+    Scalar aside() const { return x_m * y_mps - y_m * x_mps; }
     Scalar distance_squared() const { return x_m * x_m + y_m * y_m; }
     Scalar speed_squared() const { return x_mps * x_mps + y_mps * y_mps; }
-
-    // No, only if they recede or miss each other for certain. Without a branch, as either is
-    // likely.
-    bool may_meet(Scalar reach_squared) const {
-        const Scalar aside = x_m * y_mps - y_m * x_mps;
-        const bool misses = aside * aside > kFilterSlack<Scalar> * reach_squared * speed_squared() +
-                                                std::numeric_limits<Scalar>::min();
-        return static_cast<bool>(static_cast<unsigned>(rate() < Scalar(0)) &
-                                 static_cast<unsigned>(!misses));
-    }
 };
 
 }  // namespace fts::physics

@@ -1,8 +1,11 @@
 #include "common/physics/flight_filter.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+
+#include "common/physics/time_of_impact.h"
 
 #if defined(__x86_64__)
 #define FTS_HAS_FOURS
@@ -12,7 +15,6 @@
 namespace fts::physics {
 namespace {
 
-// One by one.
 template <typename Scalar, bool kEqualRadii>
 struct OneByOne {
     static void gather(const Flight<Scalar>* flights, const std::uint32_t* bodies,
@@ -51,22 +53,34 @@ struct OneByOne {
         return bits;
     }
 
-    static std::uint32_t may_meet(const Neighbours<Scalar>& about, const Flight<Scalar>& self,
-                                  const Vec2<Scalar>& shift_m) {
-        std::uint32_t bits = 0;
+    static void look_ahead(const Neighbours<Scalar>& about, const Flight<Scalar>& self,
+                           const Vec2<Scalar>& shift_m, double now_s, Ahead<Scalar>& ahead) {
+        ahead.any = 0;
         for (std::uint32_t k = 0; k < about.count; ++k) {
-            const Approach<Scalar> approach(self, about, k, shift_m);
-            const Scalar reach = reach_m(about, k, self.radius_m);
-            bits |= static_cast<std::uint32_t>(approach.may_meet(reach * reach)) << k;
+            const Approach<Scalar> way(self, about, k, shift_m);
+            const Scalar reach = reach_m(about, k, self.radius_m), aside = way.aside();
+            const Scalar limit = (kFilterSlack<Scalar> * (reach * reach)) * way.speed_squared() +
+                                 std::numeric_limits<Scalar>::min();
+            const bool misses = aside * aside > limit;
+            ahead.any |= static_cast<std::uint32_t>(way.rate() < Scalar(0) && !misses) << k;
+            ahead.earliest_s[k] = now_s;
         }
-        return bits;
+        ahead.first = ahead.any;
     }
 
-    static constexpr FlightKernels<Scalar> kTable{gather, close, may_meet};
+    static std::uint32_t until(const Ahead<Scalar>& ahead, std::uint32_t count, double time_s) {
+        std::uint32_t bits = 0;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            bits |= static_cast<std::uint32_t>(ahead.earliest_s[k] <= time_s) << k;
+        }
+        return bits & ahead.any;
+    }
+
+    static constexpr FlightKernels<Scalar> kTable{gather, close, look_ahead, until};
 };
 
 #if defined(FTS_HAS_FOURS)
-#define FTS_AVX2 __attribute__((target("avx2")))
+#define FTS_AVX2 __attribute__((target("avx2,popcnt")))
 
 FTS_AVX2 inline __m256d four_of(const double& a, const double& b, const double& c,
                                 const double& d) {
@@ -83,24 +97,84 @@ FTS_AVX2 inline __m256d flown(__m256d from, __m256d speed, __m256d time) {
     return _mm256_add_pd(from, _mm256_mul_pd(speed, time));
 }
 
+FTS_AVX2 inline std::uint32_t bits_of(__m256d mask) {
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(mask));
+}
+
 struct FourFlights {
-    __m256d x, y, x_speed, y_speed;
+    __m256d x, y, vx, vy;
 };
 
 FTS_AVX2 inline FourFlights side_by_side(const Flight<double>& a, const Flight<double>& b,
                                          const Flight<double>& c, const Flight<double>& d) {
     static_assert(offsetof(Flight<double>, velocity_mps) == 2 * sizeof(double));
-    const __m256d a_all = _mm256_load_pd(a.position_m.data());
-    const __m256d b_all = _mm256_load_pd(b.position_m.data());
-    const __m256d c_all = _mm256_load_pd(c.position_m.data());
-    const __m256d d_all = _mm256_load_pd(d.position_m.data());
-    const __m256d ab_x = _mm256_unpacklo_pd(a_all, b_all), ab_y = _mm256_unpackhi_pd(a_all, b_all);
-    const __m256d cd_x = _mm256_unpacklo_pd(c_all, d_all), cd_y = _mm256_unpackhi_pd(c_all, d_all);
-    return {_mm256_permute2f128_pd(ab_x, cd_x, 0x20), _mm256_permute2f128_pd(ab_y, cd_y, 0x20),
-            _mm256_permute2f128_pd(ab_x, cd_x, 0x31), _mm256_permute2f128_pd(ab_y, cd_y, 0x31)};
+    const __m256d all_a = _mm256_load_pd(a.position_m.data());
+    const __m256d all_b = _mm256_load_pd(b.position_m.data());
+    const __m256d all_c = _mm256_load_pd(c.position_m.data());
+    const __m256d all_d = _mm256_load_pd(d.position_m.data());
+    const __m256d x_ab = _mm256_unpacklo_pd(all_a, all_b), y_ab = _mm256_unpackhi_pd(all_a, all_b);
+    const __m256d x_cd = _mm256_unpacklo_pd(all_c, all_d), y_cd = _mm256_unpackhi_pd(all_c, all_d);
+    return {_mm256_permute2f128_pd(x_ab, x_cd, 0x20), _mm256_permute2f128_pd(y_ab, y_cd, 0x20),
+            _mm256_permute2f128_pd(x_ab, x_cd, 0x31), _mm256_permute2f128_pd(y_ab, y_cd, 0x31)};
 }
 
-// Four at a time, where the processor has AVX2. The arithmetic is that of Approach.
+struct FourWaits {
+    __m256d may_meet;  // a mask
+    __m256d least;
+};
+
+// Of one flight with four others.
+struct Ways {
+    __m256d since, radius, x, y, vx, vy, shift_x, shift_y;
+
+    FTS_AVX2 Ways(const Flight<double>& self, const Vec2d& shift_m)
+        : since(_mm256_set1_pd(self.since_s)),
+          radius(_mm256_set1_pd(self.radius_m)),
+          x(_mm256_set1_pd(self.position_m[0])),
+          y(_mm256_set1_pd(self.position_m[1])),
+          vx(_mm256_set1_pd(self.velocity_mps[0])),
+          vy(_mm256_set1_pd(self.velocity_mps[1])),
+          shift_x(_mm256_set1_pd(shift_m[0])),
+          shift_y(_mm256_set1_pd(shift_m[1])) {}
+
+    FTS_AVX2 FourWaits waits(const Neighbours<double>& about, std::uint32_t k, __m256d from,
+                             __m256d reach) const {
+        const __m256d zero = _mm256_setzero_pd();
+        const __m256d time = _mm256_sub_pd(from, since);
+        const __m256d dx = _mm256_sub_pd(
+            _mm256_sub_pd(flown(x, vx, time), _mm256_load_pd(about.x_m + k)), shift_x);
+        const __m256d dy = _mm256_sub_pd(
+            _mm256_sub_pd(flown(y, vy, time), _mm256_load_pd(about.y_m + k)), shift_y);
+        const __m256d wx = _mm256_sub_pd(vx, _mm256_load_pd(about.x_mps + k));
+        const __m256d wy = _mm256_sub_pd(vy, _mm256_load_pd(about.y_mps + k));
+        const __m256d aside = _mm256_sub_pd(_mm256_mul_pd(dx, wy), _mm256_mul_pd(dy, wx));
+        const __m256d aside_squared = _mm256_mul_pd(aside, aside);
+        const __m256d rate = sum_of_products(dx, wx, dy, wy);
+        const __m256d reach_squared = _mm256_mul_pd(reach, reach);
+        const __m256d speed_squared = sum_of_products(wx, wx, wy, wy);
+        const __m256d limit = _mm256_add_pd(
+            _mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(kFilterSlack<double>), reach_squared),
+                          speed_squared),
+            _mm256_set1_pd(std::numeric_limits<double>::min()));
+        const __m256d misses = _mm256_cmp_pd(aside_squared, limit, _CMP_GT_OQ);
+        const __m256d approaches = _mm256_cmp_pd(rate, zero, _CMP_LT_OQ);
+        const __m256d widest = _mm256_mul_pd(reach_squared, speed_squared);
+        const __m256d chord = _mm256_sub_pd(widest, aside_squared);
+        const __m256d chord_slack = _mm256_mul_pd(_mm256_set1_pd(kChordSlack), widest);
+        const __m256d root = _mm256_sqrt_pd(_mm256_add_pd(_mm256_max_pd(chord, zero), chord_slack));
+        const __m256d divisor = _mm256_sub_pd(root, rate);
+        const __m256d distance_squared = sum_of_products(dx, dx, dy, dy);
+        const __m256d gap = _mm256_sub_pd(distance_squared, reach_squared);
+        const __m256d gap_slack = _mm256_mul_pd(_mm256_set1_pd(kGapSlack),
+                                                _mm256_add_pd(distance_squared, reach_squared));
+        const __m256d wait =
+            _mm256_div_pd(_mm256_max_pd(_mm256_sub_pd(gap, gap_slack), zero), divisor);
+        return {_mm256_andnot_pd(misses, approaches),
+                _mm256_mul_pd(wait, _mm256_set1_pd(1.0 - kQuotientSlack))};
+    }
+};
+
+// Four at a time, where the processor has AVX2. The arithmetic is that of OneByOne.
 template <bool kEqualRadii>
 struct FourByFour {
     FTS_AVX2 static void gather(const Flight<double>* flights, const std::uint32_t* bodies,
@@ -121,10 +195,10 @@ struct FourByFour {
             const __m128i left_out =
                 _mm_or_si128(_mm_cmpeq_epi32(who, all_self), _mm_cmpeq_epi32(who, all_partner));
             const __m256d nan = _mm256_castsi256_pd(_mm256_cvtepi32_epi64(left_out));
-            _mm256_store_pd(found.x_m + k, _mm256_or_pd(nan, flown(four.x, four.x_speed, time)));
-            _mm256_store_pd(found.y_m + k, flown(four.y, four.y_speed, time));
-            _mm256_store_pd(found.x_mps + k, four.x_speed);
-            _mm256_store_pd(found.y_mps + k, four.y_speed);
+            _mm256_store_pd(found.x_m + k, _mm256_or_pd(nan, flown(four.x, four.vx, time)));
+            _mm256_store_pd(found.y_m + k, flown(four.y, four.vy, time));
+            _mm256_store_pd(found.x_mps + k, four.vx);
+            _mm256_store_pd(found.y_mps + k, four.vy);
             _mm256_store_pd(found.from_s + k, from);
             if constexpr (!kEqualRadii) {
                 _mm256_store_pd(found.radius_m + k,
@@ -150,47 +224,43 @@ struct FourByFour {
             const __m256d y = _mm256_sub_pd(at_y, _mm256_load_pd(about.y_m + k));
             const __m256d within = reach(about, k, radius);
             const __m256d limit = _mm256_mul_pd(factor_squared, _mm256_mul_pd(within, within));
-            const __m256d is_close = _mm256_cmp_pd(sum_of_products(x, x, y, y), limit, _CMP_LE_OQ);
-            bits |= static_cast<std::uint32_t>(_mm256_movemask_pd(is_close)) << k;
+            bits |= bits_of(_mm256_cmp_pd(sum_of_products(x, x, y, y), limit, _CMP_LE_OQ)) << k;
         }
         return bits;
     }
 
-    FTS_AVX2 static std::uint32_t may_meet(const Neighbours<double>& about,
-                                           const Flight<double>& self, const Vec2d& shift_m) {
-        const __m256d since = _mm256_set1_pd(self.since_s);
-        const __m256d at_x = _mm256_set1_pd(self.position_m[0]);
-        const __m256d at_y = _mm256_set1_pd(self.position_m[1]);
-        const __m256d x_speed = _mm256_set1_pd(self.velocity_mps[0]);
-        const __m256d y_speed = _mm256_set1_pd(self.velocity_mps[1]);
-        const __m256d shift_x = _mm256_set1_pd(shift_m[0]), shift_y = _mm256_set1_pd(shift_m[1]);
-        const __m256d radius = _mm256_set1_pd(self.radius_m);
-        const __m256d slack = _mm256_set1_pd(kFilterSlack<double>);
-        const __m256d least = _mm256_set1_pd(std::numeric_limits<double>::min());
-        std::uint32_t bits = 0;
+    FTS_AVX2 static void look_ahead(const Neighbours<double>& about, const Flight<double>& self,
+                                    const Vec2d& shift_m, double now_s, Ahead<double>& ahead) {
+        const __m256d now = _mm256_set1_pd(now_s), never = _mm256_set1_pd(kNever<double>);
+        const Ways ways(self, shift_m);
+        __m256d least = never;
+        ahead.any = 0;
         for (std::uint32_t k = 0; k < about.count; k += 4) {
-            const __m256d time = _mm256_sub_pd(_mm256_load_pd(about.from_s + k), since);
-            const __m256d x = _mm256_sub_pd(
-                _mm256_sub_pd(flown(at_x, x_speed, time), _mm256_load_pd(about.x_m + k)), shift_x);
-            const __m256d y = _mm256_sub_pd(
-                _mm256_sub_pd(flown(at_y, y_speed, time), _mm256_load_pd(about.y_m + k)), shift_y);
-            const __m256d vx = _mm256_sub_pd(x_speed, _mm256_load_pd(about.x_mps + k));
-            const __m256d vy = _mm256_sub_pd(y_speed, _mm256_load_pd(about.y_mps + k));
-            const __m256d within = reach(about, k, radius);
-            const __m256d wide = _mm256_mul_pd(slack, _mm256_mul_pd(within, within));
-            const __m256d aside = _mm256_sub_pd(_mm256_mul_pd(x, vy), _mm256_mul_pd(y, vx));
-            const __m256d limit =
-                _mm256_add_pd(_mm256_mul_pd(wide, sum_of_products(vx, vx, vy, vy)), least);
-            const __m256d misses = _mm256_cmp_pd(_mm256_mul_pd(aside, aside), limit, _CMP_GT_OQ);
-            const __m256d approaches =
-                _mm256_cmp_pd(sum_of_products(x, vx, y, vy), _mm256_setzero_pd(), _CMP_LT_OQ);
-            const __m256d both = _mm256_andnot_pd(misses, approaches);
-            bits |= static_cast<std::uint32_t>(_mm256_movemask_pd(both)) << k;
+            const __m256d from = _mm256_load_pd(about.from_s + k);
+            const FourWaits waits = ways.waits(about, k, from, reach(about, k, ways.radius));
+            ahead.any |= bits_of(waits.may_meet) << k;
+            const __m256d time = _mm256_max_pd(_mm256_add_pd(from, waits.least), now);
+            const __m256d earliest = _mm256_blendv_pd(never, time, waits.may_meet);
+            least = _mm256_min_pd(earliest, least);
+            _mm256_store_pd(ahead.earliest_s + k, earliest);
         }
-        return bits;
+        least = _mm256_min_pd(least, _mm256_permute2f128_pd(least, least, 1));
+        least = _mm256_min_pd(least, _mm256_permute_pd(least, 5));
+        ahead.first = until(ahead, about.count, _mm256_cvtsd_f64(least));
     }
 
-    static constexpr FlightKernels<double> kTable{gather, close, may_meet};
+    FTS_AVX2 static std::uint32_t until(const Ahead<double>& ahead, std::uint32_t count,
+                                        double time_s) {
+        const __m256d latest = _mm256_set1_pd(time_s);
+        std::uint32_t bits = 0;
+        for (std::uint32_t k = 0; k < count; k += 4) {
+            const __m256d earliest = _mm256_load_pd(ahead.earliest_s + k);
+            bits |= bits_of(_mm256_cmp_pd(earliest, latest, _CMP_NGT_UQ)) << k;
+        }
+        return bits & ahead.any;
+    }
+
+    static constexpr FlightKernels<double> kTable{gather, close, look_ahead, until};
 };
 
 #endif
@@ -201,6 +271,7 @@ template <typename Scalar>
 const FlightKernels<Scalar>& flight_kernels([[maybe_unused]] SimdLevel level, bool equal_radii) {
 #if defined(FTS_HAS_FOURS)
     if constexpr (std::is_same_v<Scalar, double>) {
+        if (level >= SimdLevel::kAvx512) return flight_kernels_avx512(equal_radii);
         if (level >= SimdLevel::kAvx2) {
             return equal_radii ? FourByFour<true>::kTable : FourByFour<false>::kTable;
         }

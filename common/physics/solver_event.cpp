@@ -42,7 +42,7 @@ class EventSolver final : public Solver<Scalar> {
     std::uint32_t fall(std::uint32_t body);
     std::uint32_t collide_together(const Due& due);
 
-    void touch(std::uint32_t a, std::uint32_t b, Scalar slack_s);
+    void touch(std::uint32_t a, std::uint32_t b, const Vec& separation_m, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
     bool touches_another(std::uint32_t sight, std::uint32_t body, std::uint32_t partner);
     bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
@@ -52,8 +52,9 @@ class EventSolver final : public Solver<Scalar> {
     void join(std::uint32_t body);
     void touch_together(std::uint32_t a, std::uint32_t b);
     void show(std::uint32_t body);
+    Vec present_position_m(std::uint32_t body) const;
 
-    BodyId id_of(std::uint32_t body) const { return bodies_->id_of(coasting_.index_of(body)); }
+    BodyId id_of(std::uint32_t body) const { return coasting_.id_of(body); }
     Scalar time_in_step() const;
     bool was_just_hit(std::uint32_t body) const;
     Scalar restitution_of(bool just_hit) const {
@@ -138,13 +139,14 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
     coasting_.move_to_now(b);
     const Vec velocity_a = coasting_.flight(a).velocity_mps;
     const Vec velocity_b = coasting_.flight(b).velocity_mps;
-    if (!(coasting_.separation_m(a, b).dot(velocity_a - velocity_b) < Scalar(0))) {
+    const Vec met_at = coasting_.separation_m(a, b);
+    if (!(met_at.dot(velocity_a - velocity_b) < Scalar(0))) {
         coasting_.predict(due);
         return 0;
     }
     const Scalar radius_a = coasting_.flight(a).radius_m, radius_b = coasting_.flight(b).radius_m;
-    const Scalar depth = penetration(coasting_.separation_m(a, b).norm(), radius_a, radius_b);
-    touch(a, b, slack_s);
+    const Scalar depth = penetration(met_at.norm(), radius_a, radius_b);
+    touch(a, b, met_at, slack_s);
     const Vec separation = coasting_.separation_m(a, b);
     const Mover<Scalar> first{separation, velocity_a, coasting_.mass_kg(a)};
     const Mover<Scalar> second{Vec::Zero(), velocity_b, coasting_.mass_kg(b)};
@@ -153,8 +155,7 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
         coasting_.predict(due);
         return 0;
     }
-    show(a);
-    const Vec position = bodies_->position_m[coasting_.index_of(a)];
+    const Vec position = present_position_m(a);
     record_->contacts.push_back(
         {id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
          hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
@@ -276,16 +277,21 @@ void EventSolver<Scalar>::touch_together(std::uint32_t a, std::uint32_t b) {
 // For the record: where the body is now.
 template <typename Scalar>
 void EventSolver<Scalar>::show(std::uint32_t body) {
+    bodies_->position_m[coasting_.index_of(body)] = present_position_m(body);
+}
+
+template <typename Scalar>
+Vec2<Scalar> EventSolver<Scalar>::present_position_m(std::uint32_t body) const {
     const Vec position = coasting_.position_m(body);
-    bodies_->position_m[coasting_.index_of(body)] =
-        model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
+    return model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
 }
 
 // After moving to the time of impact, which is only as fine as the clock, the pair is moved on
 // along its own velocities until it just touches.
 template <typename Scalar>
-void EventSolver<Scalar>::touch(std::uint32_t a, std::uint32_t b, Scalar slack_s) {
-    const Vec d = coasting_.separation_m(a, b);
+void EventSolver<Scalar>::touch(std::uint32_t a, std::uint32_t b, const Vec& separation_m,
+                                Scalar slack_s) {
+    const Vec& d = separation_m;
     const auto &first = coasting_.flight(a), &second = coasting_.flight(b);
     const Scalar distance = d.norm();
     const Scalar closing = -d.dot(first.velocity_mps - second.velocity_mps) / distance;
@@ -309,15 +315,16 @@ Scalar EventSolver<Scalar>::clock_slack_s(std::uint32_t a, std::uint32_t b) cons
 template <typename Scalar>
 bool EventSolver<Scalar>::touches_another(std::uint32_t sight, std::uint32_t body,
                                           std::uint32_t partner) {
-    for (std::uint32_t side = 0; model_->walls && side < 4; ++side) {
-        if (body != partner && touches_wall(body, side)) return true;
+    if (body != partner && model_->walls && coasting_.is_at_border(body)) {
+        for (std::uint32_t side = 0; side < 4; ++side) {
+            if (touches_wall(body, side)) return true;
+        }
     }
-    bool found = false;
-    coasting_.look_around(sight, body, partner, static_cast<Scalar>(1.0 + 2.0 * kTouchWithin),
-                          [&](std::uint32_t other, const Vec& separation) {
-                              found = found || are_touching(body, other, separation);
-                          });
-    return found;
+    return coasting_.look_around(sight, body, partner,
+                                 static_cast<Scalar>(1.0 + 2.0 * kTouchWithin),
+                                 [&](std::uint32_t other, const Vec& separation) {
+                                     return are_touching(body, other, separation);
+                                 });
 }
 
 template <typename Scalar>
@@ -335,7 +342,7 @@ bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b,
 
 template <typename Scalar>
 bool EventSolver<Scalar>::touches_wall(std::uint32_t body, std::uint32_t side) const {
-    if (!model_->walls || !coasting_.is_outermost(body, side)) return false;
+    if (!model_->walls) return false;
     const std::uint32_t axis = side / 2;
     const Scalar radius = coasting_.flight(body).radius_m;
     const Scalar position = coasting_.position_m(body)[axis];

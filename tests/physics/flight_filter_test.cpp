@@ -1,10 +1,12 @@
 // Those about a body, and who of them may meet it: the same with vector instructions as one by one.
 #include "common/physics/flight_filter.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -52,12 +54,22 @@ void expect_same(const Neighbours<Scalar>& one, const Neighbours<Scalar>& other,
     }
 }
 
+template <typename Scalar>
+double meeting_s(const Flight<Scalar>& self, const Neighbours<Scalar>& about, std::uint32_t k,
+                 const Vec2<Scalar>& shift_m, Scalar its_radius_m, double now_s) {
+    const Approach<Scalar> way(self, about, k, shift_m);
+    const Scalar wait_s = time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps},
+                                                     self.radius_m + its_radius_m);
+    return std::max(now_s, way.from_s + static_cast<double>(wait_s));
+}
+
 TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_meets) {
     using Scalar = TypeParam;
     constexpr std::uint64_t kSeed = 73;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
     std::size_t passed_in_all = 0, close_in_all = 0, met_in_all = 0;
+    std::size_t timed_in_all = 0, close_bounds_in_all = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         const bool equal_radii = trial % 2 == 0;
         const auto count = static_cast<std::uint32_t>(1 + dice.below(Neighbours<Scalar>::kMost));
@@ -71,7 +83,9 @@ TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_
         Neighbours<Scalar> plain, about;
         const auto& plainly = flight_kernels<Scalar>(SimdLevel::kPlain, equal_radii);
         plainly.gather(flights.data(), all.data(), count, body, partner, self.since_s, plain);
-        const auto may_meet = plainly.may_meet(plain, self, shift);
+        const double now_s = dice.between(0.0, 0.3);
+        Ahead<Scalar> plain_ahead, ahead;
+        plainly.look_ahead(plain, self, shift, now_s, plain_ahead);
         const auto close =
             plainly.close(plain, self.position_m, self.radius_m, static_cast<Scalar>(1.25));
         for (const SimdLevel level : {SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
@@ -79,31 +93,43 @@ TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_
             const auto& kernels = flight_kernels<Scalar>(level, equal_radii);
             kernels.gather(flights.data(), all.data(), count, body, partner, self.since_s, about);
             expect_same(about, plain, equal_radii);
-            ASSERT_EQ(kernels.may_meet(about, self, shift), may_meet) << trial;
+            kernels.look_ahead(about, self, shift, now_s, ahead);
+            ASSERT_EQ(ahead.any, plain_ahead.any) << trial;
+            ASSERT_EQ(ahead.first & ~ahead.any, 0U) << trial;
+            ASSERT_EQ(ahead.first == 0, ahead.any == 0) << trial;
+            ASSERT_EQ(kernels.until(ahead, count, kNever<double>), ahead.any) << trial;
+            for (std::uint32_t bits = ahead.any; bits != 0; bits &= bits - 1) {
+                const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+                const double time_s = meeting_s(self, plain, k, shift, flights[k].radius_m, now_s);
+                ASSERT_EQ(kernels.until(ahead, count, time_s) >> k & 1U, 1U) << trial;
+                if (time_s == kNever<double> || level < SimdLevel::kAvx2) continue;
+                ++timed_in_all;
+                close_bounds_in_all += ahead.earliest_s[k] >= time_s - 1e-9 ? 1 : 0;
+            }
             ASSERT_EQ(
                 kernels.close(about, self.position_m, self.radius_m, static_cast<Scalar>(1.25)),
                 close)
                 << trial;
         }
-        passed_in_all += static_cast<std::size_t>(std::popcount(may_meet));
+        passed_in_all += static_cast<std::size_t>(std::popcount(plain_ahead.any));
         close_in_all += static_cast<std::size_t>(std::popcount(close));
         for (std::uint32_t k = 0; k < count; ++k) {
             if (k == body || k == partner) {
-                ASSERT_EQ((may_meet | close) >> k & 1U, 0U);
+                ASSERT_EQ((plain_ahead.any | close) >> k & 1U, 0U);
                 continue;
             }
-            const Approach<Scalar> way(self, plain, k, shift);
-            const Scalar reach_m = self.radius_m + flights[k].radius_m;
-            const Scalar wait_s =
-                time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps}, reach_m);
-            if (wait_s == kNever<Scalar>) continue;
+            const double time_s = meeting_s(self, plain, k, shift, flights[k].radius_m, now_s);
+            if (time_s == kNever<double>) continue;
             ++met_in_all;
-            ASSERT_EQ(may_meet >> k & 1U, 1U) << trial;
+            ASSERT_EQ(plain_ahead.any >> k & 1U, 1U) << trial;
         }
     }
     EXPECT_GT(met_in_all, 1000U);
     EXPECT_LT(passed_in_all, 2 * met_in_all);
     EXPECT_GT(close_in_all, 500U);
+    if (std::is_same_v<Scalar, double> && is_supported(SimdLevel::kAvx2)) {
+        EXPECT_GT(close_bounds_in_all, timed_in_all * 99 / 100);
+    }
 }
 
 }  // namespace
