@@ -156,9 +156,7 @@ void BucketCalendar::advance() {
 void BucketCalendar::look_beyond() {
     has_gone_on_ = true;
     soon_count_ = 0;
-    const std::int64_t next = next_occupied();
-    if (next == kNoStretch) return;
-    std::uint32_t body = first_[static_cast<std::uint32_t>(next) & mask_];
+    std::uint32_t body = first_[static_cast<std::uint32_t>(now_ + kAhead) & mask_];
     for (; body != kNobody && soon_count_ < kMostSoon; body = nodes_[body].after) {
         soon_[soon_count_++] = body;
     }

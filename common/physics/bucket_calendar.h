@@ -40,11 +40,11 @@ class BucketCalendar {
         return few_count_ > 0 ? few_[few_count_ - 1] : many_.top();
     }
 
-    // What `top` found when it went on to another stretch of time, so that it can be made ready:
-    // entries of that stretch, and bodies of the next one, in no order. Perhaps not all of them.
+    // Whether `top` went on to another stretch of time since the last call; then `soon` is who
+    // comes up kAhead stretches later, in no order: most of them, as far as is known yet.
     bool has_gone_on() { return std::exchange(has_gone_on_, false); }
-    std::span<const Entry> present() const { return {few_, few_count_}; }
     std::span<const std::uint32_t> soon() const { return {soon_, soon_count_}; }
+    static constexpr std::uint32_t kMostSoon = 8;
 
     // All times become earlier by `shift_s`. Linear in the number of bodies.
     void rebase(double shift_s);
@@ -64,7 +64,7 @@ class BucketCalendar {
     static constexpr std::uint32_t kAbsent = 0xfffffffc;
     static constexpr std::uint32_t kFirstOf = 0x80000000;  // a flag: the rest is a bucket
     static constexpr std::uint32_t kMostFew = 24;
-    static constexpr std::uint32_t kMostSoon = 8;
+    static constexpr std::uint32_t kAhead = 3;
 
     std::int64_t stretch_of(double time_s) const;
     std::uint32_t far() const { return mask_ + 1; }

@@ -34,6 +34,7 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
     apart_.clear();
     free_apart_ = kNobody;
     calendar_.reset(bodies.slots());
+    due_soon_.count = due_next_.count = 0;
     found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kGatherSpare);
     body_at_.resize(bodies.slots());
     living_.clear();
@@ -271,21 +272,6 @@ void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
         bodies.position_m[index] =
             model_.periodic ? wrapped<Scalar>(position, *model_.periodic) : position;
         bodies.velocity_mps[index] = flight.velocity_mps;
-    }
-}
-
-// Into the cache: what is due soon itself, and where it will look of what is due now.
-template <typename Scalar>
-void Coasting<Scalar>::fetch_upcoming() {
-    const auto fetch_body = [&](std::uint32_t body) {
-        __builtin_prefetch(&flights_[body], 1);
-        __builtin_prefetch(&prospects_[body], 1);
-    };
-    for (const std::uint32_t index : calendar_.soon()) fetch_body(body_at_[index]);
-    for (const BucketCalendar::Entry& entry : calendar_.present()) {
-        const std::uint32_t body = body_at_[entry.body], with = prospects_[body].with;
-        if (with != kNobody) fetch_body(with);
-        cells_.fetch(flights_[body].cell[0], flights_[body].cell[1]);
     }
 }
 

@@ -175,6 +175,11 @@ class Coasting {
         std::uint32_t row = 0, column = 0, body = 0;
         friend auto operator<=>(const InCell&, const InCell&) = default;
     };
+    // A few bodies that are due at about the same time.
+    struct Few {
+        std::uint32_t count = 0;
+        std::uint32_t body[BucketCalendar::kMostSoon] = {};
+    };
     struct Near {
         std::uint32_t index = kNobody;
         Image image;
@@ -278,6 +283,7 @@ class Coasting {
     std::vector<Apart> apart_;
     std::uint32_t free_apart_ = kNobody;
     BucketCalendar calendar_;
+    Few due_soon_, due_next_;  // see fetch_upcoming
     EventCells<Scalar> cells_;
     std::vector<std::uint32_t> found_;  // by cells_.find
     Neighbours<Scalar> about_;
@@ -401,6 +407,31 @@ void Coasting<Scalar>::renumber() {
         if (with != kNobody) with = new_body_[with];
     }
     for (Apart& apart : apart_) apart.other = new_body_[apart.other];
+}
+
+// Into the cache, one step for each stretch of the calendar: a body that will be due, then whom it
+// meets and the cells about it, then those who are in them.
+template <typename Scalar>
+void Coasting<Scalar>::fetch_upcoming() {
+    const auto fetch = [&](std::uint32_t body) {
+        __builtin_prefetch(&flights_[body], 1);
+        __builtin_prefetch(&prospects_[body], 1);
+    };
+    for (std::uint32_t i = 0; i < due_next_.count; ++i) {
+        const auto& cell = flights_[due_next_.body[i]].cell;
+        cells_.for_each_first(cell[0], cell[1],
+                              [&](std::uint32_t body) { __builtin_prefetch(&flights_[body]); });
+    }
+    due_next_ = due_soon_;
+    for (std::uint32_t i = 0; i < due_next_.count; ++i) {
+        const std::uint32_t body = due_next_.body[i], with = prospects_[body].with;
+        cells_.fetch(flights_[body].cell[0], flights_[body].cell[1]);
+        fetch(with == kNobody ? body : with);
+    }
+    due_soon_.count = 0;
+    for (const std::uint32_t index : calendar_.soon()) {
+        fetch(due_soon_.body[due_soon_.count++] = body_at_[index]);
+    }
 }
 
 extern template class Coasting<double>;

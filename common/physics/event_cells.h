@@ -66,6 +66,18 @@ class EventCells {
         }
     }
 
+    // Calls visit(body) nine times, with somebody in each of these cells; where nobody is, with 0.
+    template <typename Visit>
+    void for_each_first(std::uint32_t x, std::uint32_t y, Visit&& visit) const {
+        for (std::uint32_t row = 0; row < 3; ++row) {
+            const Cell* const cell = cells_.data() + index_of(x, y + row);
+            for (std::uint32_t column = 0; column < 3; ++column) {
+                const std::uint32_t body = cell[column].place[0];
+                visit(body == kNobody ? 0 : body);
+            }
+        }
+    }
+
   private:
     static constexpr std::uint32_t kPlaces = 4;
     // Vacant places hold kNobody, and are the last ones. Where more come together than there are
