@@ -419,8 +419,8 @@ void Coasting<Scalar>::fetch_upcoming() {
     };
     for (std::uint32_t i = 0; i < due_next_.count; ++i) {
         const auto& cell = flights_[due_next_.body[i]].cell;
-        cells_.for_each_first(cell[0], cell[1],
-                              [&](std::uint32_t body) { __builtin_prefetch(&flights_[body]); });
+        cells_.for_each_of_few(cell[0], cell[1],
+                               [&](std::uint32_t body) { __builtin_prefetch(&flights_[body]); });
     }
     due_next_ = due_soon_;
     for (std::uint32_t i = 0; i < due_next_.count; ++i) {

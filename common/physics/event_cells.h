@@ -66,14 +66,15 @@ class EventCells {
         }
     }
 
-    // Calls visit(body) nine times, with somebody in each of these cells; where nobody is, with 0.
+    // Calls visit(body) with two of those in each of these nine cells; where nobody is, with 0.
     template <typename Visit>
-    void for_each_first(std::uint32_t x, std::uint32_t y, Visit&& visit) const {
+    void for_each_of_few(std::uint32_t x, std::uint32_t y, Visit&& visit) const {
         for (std::uint32_t row = 0; row < 3; ++row) {
             const Cell* const cell = cells_.data() + index_of(x, y + row);
             for (std::uint32_t column = 0; column < 3; ++column) {
-                const std::uint32_t body = cell[column].place[0];
-                visit(body == kNobody ? 0 : body);
+                const std::uint32_t first = cell[column].place[0], second = cell[column].place[1];
+                visit(first == kNobody ? 0 : first);
+                visit(second == kNobody ? 0 : second);
             }
         }
     }

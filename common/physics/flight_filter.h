@@ -11,7 +11,7 @@
 namespace fts::physics {
 
 // So many more follow the bodies that are listed, and are to be left out.
-inline constexpr std::uint32_t kGatherSpare = 7;
+inline constexpr std::uint32_t kGatherSpare = 8;
 
 // Who of those about a body may meet it; a bit for each.
 template <typename Scalar>
