@@ -36,18 +36,22 @@ std::uint32_t* copy_places(const Cell& cell, std::uint32_t* to) {
 }
 
 #if defined(__x86_64__)
-// The same of three cells in a row; nothing, where one of them has a list.
+// The same of three cells in each of some rows; nothing, where one of them has a list.
 template <typename Cell>
-__attribute__((target("avx512f,avx512vl,avx512dq,popcnt"))) std::uint32_t* copy_three(
-    const Cell* cells, std::uint32_t* to) {
+__attribute__((target("avx512f,avx512vl,avx512dq,popcnt"))) std::uint32_t* copy_threes(
+    const Cell* cells, std::size_t stride, std::uint32_t rows, std::uint32_t* to) {
     constexpr __mmask16 kTwelve = 0x0fff;
-    const __m512i all = _mm512_maskz_loadu_epi32(kTwelve, cells);
-    const __mmask16 not_bodies = _mm512_movepi32_mask(all);
-    const __mmask16 lists = _mm512_mask_cmpneq_epi32_mask(not_bodies, all, _mm512_set1_epi32(-1));
-    if (lists != 0) return nullptr;
-    const auto bodies = static_cast<__mmask16>(~not_bodies & kTwelve);
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bodies, all));
-    return to + std::popcount(static_cast<unsigned>(bodies));
+    const __m512i nobody = _mm512_set1_epi32(-1);
+    unsigned lists = 0;
+    for (std::uint32_t row = 0; row < rows; ++row, cells += stride) {
+        const __m512i all = _mm512_maskz_loadu_epi32(kTwelve, cells);
+        const __mmask16 not_bodies = _mm512_movepi32_mask(all);
+        lists |= _mm512_mask_cmpneq_epi32_mask(not_bodies, all, nobody);
+        const auto bodies = static_cast<__mmask16>(~not_bodies & kTwelve);
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bodies, all));
+        to += std::popcount(static_cast<unsigned>(bodies));
+    }
+    return lists == 0 ? to : nullptr;
 }
 #endif
 
@@ -157,15 +161,13 @@ template <typename Scalar>
 template <std::uint32_t kColumns>
 std::uint32_t* EventCells<Scalar>::find_in(const Cell* row, std::uint32_t rows,
                                            std::uint32_t* found) const {
-    for (const Cell* const end = row + std::size_t{rows} * stride_; row != end; row += stride_) {
 #if defined(__x86_64__)
-        if (kColumns == 3 && has_avx512_) {
-            if (std::uint32_t* const copied = copy_three(row, found); copied != nullptr) {
-                found = copied;
-                continue;
-            }
-        }
+    if (kColumns == 3 && has_avx512_) {
+        std::uint32_t* const copied = copy_threes(row, stride_, rows, found);
+        if (copied != nullptr) return copied;
+    }
 #endif
+    for (const Cell* const end = row + std::size_t{rows} * stride_; row != end; row += stride_) {
         bool any_list = false;
         for (std::uint32_t column = 0; column < kColumns; ++column) {
             found = copy_places(row[column], found);
