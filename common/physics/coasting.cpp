@@ -366,6 +366,9 @@ void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t bo
         }
     };
     kernels_->look_ahead(about, self, shift_m, now_s_, ahead_);
+    if (ahead_.first == 0) return;
+    const double earliest_s = ahead_.earliest_s[std::countr_zero(ahead_.first)];
+    if (earliest_s > best.time_s) return;
     consider_all(ahead_.first);
     consider_all(kernels_->until(ahead_, about.count, best.time_s) & ~ahead_.first);
 }
