@@ -58,7 +58,9 @@ Bot::Bot(const BotConfig& config, const Script& script, net::Transport& transpor
 
 void Bot::start_session() {
     if (session_) earlier_sessions_ = tally_.session;
-    session_ = std::make_unique<client::Session>(config_.session, transport_);
+    client::SessionConfig session_config = config_.session;
+    session_config.follows_hits = false;  // nobody looks, and there may be hundreds
+    session_ = std::make_unique<client::Session>(session_config, transport_);
     last_status_ = client::Status::kConnecting;
     last_phase_.reset();
     last_view_ = {};

@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "client/core/end_words.h"
-#include "client/core/interpolation.h"
 
 namespace fts::client {
 namespace {
@@ -25,6 +24,15 @@ std::vector<replication::PlayerInfo> with_printable_names(
         player.name = printable(player.name, game::kMaxNameBytes);
     }
     return players;
+}
+
+// A server's word; a platform that makes no sense is left out.
+replication::Course course_of(const replication::LevelStarted& level, int tick_rate_hz) {
+    replication::Course course;
+    course.scene.platform = level.platform;
+    if (physics::validate(course.scene)) course.scene.platform.reset();
+    course.tick_s = 1.0 / tick_rate_hz;
+    return course;
 }
 
 BallView ball_view(const BallPose& pose, std::uint16_t own_player_id,
@@ -57,6 +65,7 @@ void ArenaMirror::apply(const replication::ServerMessage& message) {
     if (const auto* welcome = std::get_if<replication::Welcome>(&message)) {
         own_player_id_ = welcome->player_id;
         tick_rate_hz_ = welcome->tick_rate_hz;
+        interpolation_.reset();
     } else if (const auto* level = std::get_if<replication::LevelStarted>(&message)) {
         levels_.push_back(*level);
         levels_.back().name = printable(level->name, kMaxLevelTextBytes);
@@ -125,10 +134,22 @@ View ArenaMirror::view_at(double server_time_s) {
     return view;
 }
 
-void ArenaMirror::add_balls(View& view, double draw_tick) const {
+std::vector<BallPose> ArenaMirror::poses_at(double draw_tick) {
     const Snapshot& from = *snapshots_.front();
     const Snapshot& to = snapshots_.size() > 1 ? *snapshots_[1] : from;
-    for (const BallPose& pose : interpolate(from, to, draw_tick, tick_rate_hz_)) {
+    if (flights_ == Flights::kStraight || levels_.empty()) {
+        return interpolate(from, to, draw_tick, tick_rate_hz_);
+    }
+    const replication::LevelStarted& level = level_numbered(from.level);
+    if (!interpolation_ || interpolated_level_ != level.number) {
+        interpolation_.emplace(course_of(level, tick_rate_hz_));
+        interpolated_level_ = level.number;
+    }
+    return interpolation_->at(from, to, draw_tick);
+}
+
+void ArenaMirror::add_balls(View& view, double draw_tick) {
+    for (const BallPose& pose : poses_at(draw_tick)) {
         BallView ball = ball_view(pose, own_player_id_, players_);
         if (ball.is_own) view.own_ball = view.balls.size();
         view.balls.push_back(std::move(ball));

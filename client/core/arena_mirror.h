@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/core/interpolation.h"
 #include "client/core/view.h"
 #include "common/game/rules.h"
 #include "common/replication/messages.h"
@@ -20,8 +21,13 @@ inline constexpr std::size_t kMaxHeldSnapshots = 64;
 // Hits that wait for their moment to be drawn; the oldest give way.
 inline constexpr std::size_t kMaxPendingHits = 4096;
 
+// How balls go from one snapshot to the next (interpolation.h).
+enum class Flights : std::uint8_t { kStraight, kWithHits };
+
 class ArenaMirror {
   public:
+    explicit ArenaMirror(Flights flights = Flights::kWithHits) : flights_(flights) {}
+
     void apply(const replication::ServerMessage& message);
     // Whole, and newer than every one before it.
     void add(std::shared_ptr<const replication::Snapshot> snapshot);
@@ -39,9 +45,13 @@ class ArenaMirror {
 
   private:
     const replication::LevelStarted& level_numbered(int number) const;
-    void add_balls(View& view, double draw_tick) const;
+    std::vector<BallPose> poses_at(double draw_tick);
+    void add_balls(View& view, double draw_tick);
     void add_hits(View& view, double draw_tick);
 
+    Flights flights_;
+    std::optional<FlightInterpolation> interpolation_;  // on the level that is shown
+    int interpolated_level_ = 0;
     int tick_rate_hz_ = game::kTickRateHz;
     std::uint16_t own_player_id_ = 0;
     // The newest last. Drawing lags behind messages, so the level before is still needed for a

@@ -53,7 +53,8 @@ struct Session::Impl {
         : config(session_config),
           transport(session_transport),
           dialer({config.key, config.server, config.protocol_version, config.pinned_server_key},
-                 transport) {}
+                 transport),
+          arena(config.follows_hits ? Flights::kWithHits : Flights::kStraight) {}
 
     void look(double now_s);
     void receive_datagrams(double now_s);

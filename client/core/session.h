@@ -25,6 +25,9 @@ struct SessionConfig {
     int arena = -1;
     std::optional<net::PublicKey> pinned_server_key;
     std::uint16_t protocol_version = net::kProtocolVersion;
+    // Views have the kink of a hit between two snapshots where it happened, for a few microseconds
+    // a ball and snapshot; else straight lines.
+    bool follows_hits = true;
 };
 
 enum class Status : std::uint8_t { kConnecting, kJoining, kPlaying, kEnded };

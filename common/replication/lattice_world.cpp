@@ -35,17 +35,11 @@ physics::Vec2d place_inside(physics::Vec2d place_m, double radius_m, const physi
 
 }  // namespace
 
-LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> balls)
-    : course_(course), balls_(balls.begin(), balls.end()), world_(scene_of(balls)) {
-    steer_all();
-}
-
-physics::Scene LatticeWorld::scene_of(std::span<const BallState> balls) const {
-    assert(!course_.scene.platform && !course_.scene.periodic);
-    physics::Scene scene = course_.scene;
+physics::Scene scene_of(const Course& course, std::span<const BallState> balls) {
+    physics::Scene scene = course.scene;
     scene.bodies.clear();
     scene.bodies.reserve(balls.size());
-    const Lattice& lattice = course_.lattice;
+    const Lattice& lattice = course.lattice;
     for (const BallState& ball : balls) {
         physics::BodyDef body;
         body.radius_m = fitting_radius_m(ball, scene);
@@ -60,6 +54,12 @@ physics::Scene LatticeWorld::scene_of(std::span<const BallState> balls) const {
         scene.bodies.push_back(body);
     }
     return scene;
+}
+
+LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> balls)
+    : course_(course), balls_(balls.begin(), balls.end()), world_(scene_of(course, balls)) {
+    assert(!course_.scene.platform && !course_.scene.periodic);
+    steer_all();
 }
 
 void LatticeWorld::steer_all() {
@@ -84,7 +84,7 @@ void LatticeWorld::advance(double span_s) {
 
 void LatticeWorld::snap() {
     balls_ = balls();
-    world_ = physics::World<double>(scene_of(balls_));
+    world_ = physics::World<double>(scene_of(course_, balls_));
     steer_all();
 }
 

@@ -32,10 +32,13 @@ struct Course {
     std::function<physics::Control<double>(const BallState&)> control_of;
 };
 
+// The course with these balls on it, whatever they hold: inside the walls, if there are any, and
+// made valid bodies.
+physics::Scene scene_of(const Course& course, std::span<const BallState> balls);
+
 class LatticeWorld {
   public:
-    // Whatever the balls hold, they are put inside the walls, if there are any, and made valid
-    // bodies: none is ever lost.
+    // Whatever the balls hold, none is ever lost.
     LatticeWorld(const Course& course, std::span<const BallState> balls);
 
     // The control in `controls` acts on ball `index` from now on.
@@ -49,9 +52,10 @@ class LatticeWorld {
     // Of the last `advance`; the index of a body is that of its ball.
     std::span<const physics::Contact<double>> contacts() const { return world_.contacts(); }
     double kinetic_energy_j() const { return world_.kinetic_energy_j(); }
+    // Off the lattice, as it is between snaps; the index of a body is that of its ball.
+    const physics::World<double>& world() const { return world_; }
 
   private:
-    physics::Scene scene_of(std::span<const BallState> balls) const;
     void steer_all();
 
     Course course_;

@@ -30,14 +30,6 @@ physics::Control<double> control_of(const BallState& ball) {
     return control;
 }
 
-// Covering what they should, to the nearest step of a radius.
-double radius_m_of(std::size_t count) {
-    const double area_m2 = kTraceCoverage * kTraceWidthM * kTraceHeightM;
-    const double radius_m = std::sqrt(area_m2 / (static_cast<double>(count) * std::numbers::pi));
-    return std::max(1.0, std::round(radius_m / replication::kRadiusStepM)) *
-           replication::kRadiusStepM;
-}
-
 void choose_steered(std::vector<BallState>& balls, std::uint64_t seed) {
     physics::SplitMix random(seed);
     auto left =
@@ -50,6 +42,13 @@ void choose_steered(std::vector<BallState>& balls, std::uint64_t seed) {
 }
 
 }  // namespace
+
+double trace_radius_m(std::size_t count) {
+    const double area_m2 = kTraceCoverage * kTraceWidthM * kTraceHeightM;
+    const double radius_m = std::sqrt(area_m2 / (static_cast<double>(count) * std::numbers::pi));
+    return std::max(1.0, std::round(radius_m / replication::kRadiusStepM)) *
+           replication::kRadiusStepM;
+}
 
 replication::Course trace_course() {
     replication::Course course;
@@ -66,7 +65,7 @@ std::optional<ArenaTrace> ArenaTrace::make(std::size_t count, std::uint64_t seed
     physics::Generator generator;
     generator.seed = seed;
     generator.count = static_cast<std::int64_t>(count);
-    generator.radius_min_m = generator.radius_max_m = radius_m_of(count);
+    generator.radius_min_m = generator.radius_max_m = trace_radius_m(count);
     generator.speed_rms_mps = kTraceRmsSpeedMps;
     auto filled = physics::fill(trace_course().scene, generator);
     if (const auto* refused = std::get_if<physics::SceneError>(&filled)) {
@@ -119,11 +118,13 @@ void ArenaTrace::snap() {
     if (before_j > 0.0) energy_added_ += (world_.kinetic_energy_j() - before_j) / before_j;
 }
 
-TraceSnapshot ArenaTrace::next() {
+TraceSnapshot ArenaTrace::next(const TickWatch& watch) {
     TraceSnapshot snapshot;
     for (replication::Tick i = 0; i < snapshot_ticks_; ++i, ++tick_) {
         steer(snapshot);
+        if (watch.before) watch.before(world_.world());
         world_.advance(course_.tick_s);
+        if (watch.after) watch.after(world_.world());
     }
     if (snaps_) snap();
     snapshot.tick = tick_;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ inline constexpr double kTraceThrustMps2 = kTraceHeightM;
 inline constexpr double kTraceDragPerS = 2.0;
 inline constexpr double kTraceRmsSpeedMps = 0.22 * kTraceHeightM;
 inline constexpr int kTraceTickRateHz = 60;
+// The first part of every trace is not measured.
+inline constexpr double kUnmeasuredS = 10.0;
 inline constexpr replication::Lattice kTraceLattice{kTraceHeightM / 4096.0,
                                                     10.0 * kTraceHeightM / 4096.0};
 
@@ -31,6 +34,13 @@ struct TraceSnapshot {
     replication::Tick tick = 0;
     std::vector<replication::BallState> balls;
     std::vector<replication::ControlEvent> events;  // since the snapshot before
+};
+
+// Covering what they should, to the nearest step of a radius.
+double trace_radius_m(std::size_t count);
+
+struct TickWatch {
+    std::function<void(const physics::World<double>&)> before, after;
 };
 
 // What server and client know of it besides snapshots.
@@ -44,8 +54,8 @@ class ArenaTrace {
                                           replication::Tick snapshot_ticks, bool snaps,
                                           std::string& error);
 
-    // On to the next snapshot.
-    TraceSnapshot next();
+    // On to the next snapshot; `watch` sees the world before and after each tick.
+    TraceSnapshot next(const TickWatch& watch = {});
     double rms_speed_mps() const;
     // What snapping has added to the kinetic energy so far, each time as a part of what there was.
     double energy_added_by_snapping() const { return energy_added_; }

@@ -7,6 +7,7 @@
 #include "server/lab/bench_command.h"
 #include "server/lab/compare_command.h"
 #include "server/lab/exit_codes.h"
+#include "server/lab/interpolation_command.h"
 #include "server/lab/plan_command.h"
 #include "server/lab/replication_command.h"
 #include "server/lab/run_command.h"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
     fts::lab::add_plan(app, exit_code);
     fts::lab::add_bench(app, exit_code);
     fts::lab::add_replication(app, exit_code);
+    fts::lab::add_interpolation(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

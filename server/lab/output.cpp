@@ -34,4 +34,27 @@ bool Output::finish(std::string& error) {
     return false;
 }
 
+StudyFiles StudyFiles::open(const std::string& json_path, const std::string& svg_path,
+                            std::string& error) {
+    StudyFiles files;
+    if (json_path == "-" && svg_path == "-") {
+        error = "--json and --svg both go to the terminal; give one of them a file";
+        return files;
+    }
+    if (!json_path.empty()) files.json = Output::open(json_path, "--json", error);
+    if (error.empty() && !svg_path.empty()) files.svg = Output::open(svg_path, "--svg", error);
+    return files;
+}
+
+bool StudyFiles::on_stdout() const {
+    return (json && json->is_stdout()) || (svg && svg->is_stdout());
+}
+
+bool StudyFiles::write(const std::string& json_text, const std::string& svg_text,
+                       std::string& error) {
+    if (json) json->stream() << json_text;
+    if (svg) svg->stream() << svg_text;
+    return (!json || json->finish(error)) && (!svg || svg->finish(error));
+}
+
 }  // namespace fts::lab

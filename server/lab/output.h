@@ -25,4 +25,17 @@ class Output {
     std::ofstream file_;
 };
 
+// The files of a study: all figures for programs, and a picture. An empty path: not wanted.
+struct StudyFiles {
+    // `error` is set when one cannot be written, or both are to go to stdout.
+    static StudyFiles open(const std::string& json_path, const std::string& svg_path,
+                           std::string& error);
+
+    bool on_stdout() const;
+    // False with `error` set when not everything was written.
+    bool write(const std::string& json_text, const std::string& svg_text, std::string& error);
+
+    std::unique_ptr<Output> json, svg;
+};
+
 }  // namespace fts::lab

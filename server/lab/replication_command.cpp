@@ -31,39 +31,6 @@ bool divides_the_tick_rate(double rate_hz) {
     return std::abs(ticks - std::round(ticks)) < 1e-6;
 }
 
-struct Outputs {
-    std::unique_ptr<Output> json, svg;
-    std::string error;
-};
-
-Outputs open_outputs(const Options& options) {
-    Outputs outputs;
-    if (options.json_file == "-" && options.svg_file == "-") {
-        outputs.error = "--json and --svg both go to the terminal; give one of them a file";
-        return outputs;
-    }
-    if (!options.json_file.empty()) {
-        outputs.json = Output::open(options.json_file, "--json", outputs.error);
-    }
-    if (outputs.error.empty() && !options.svg_file.empty()) {
-        outputs.svg = Output::open(options.svg_file, "--svg", outputs.error);
-    }
-    return outputs;
-}
-
-bool write_all(Outputs& outputs, const ReplicationRequest& request, const ReplicationStudy& study) {
-    if (outputs.json) outputs.json->stream() << json_of(request, study);
-    if (outputs.svg) outputs.svg->stream() << svg_of(request, study);
-    bool good = true;
-    for (Output* output : {outputs.json.get(), outputs.svg.get()}) {
-        if (output != nullptr && !output->finish(outputs.error)) {
-            complain(outputs.error);
-            good = false;
-        }
-    }
-    return good;
-}
-
 // What was decoded and is not what was sent, of all coders.
 std::uint64_t wrong_of(const ReplicationStudy& study) {
     std::uint64_t wrong = 0;
@@ -76,9 +43,10 @@ int execute(const Options& options) {
         complain("--rate must be 60 over a whole number: 60, 30, 20, 15, 12, 10, ...");
         return kExitUsage;
     }
-    Outputs outputs = open_outputs(options);
-    if (!outputs.error.empty()) {
-        complain(outputs.error);
+    std::string error;
+    StudyFiles files = StudyFiles::open(options.json_file, options.svg_file, error);
+    if (!error.empty()) {
+        complain(error);
         return kExitFailure;
     }
     listen_for_interruption();
@@ -93,9 +61,10 @@ int execute(const Options& options) {
         complain(study.error);
         return kExitUsage;
     }
-    const bool to_stdout = options.json_file == "-" || options.svg_file == "-";
-    std::fputs(table_of(options.request, study).c_str(), to_stdout ? stderr : stdout);
-    const bool written = write_all(outputs, options.request, study);
+    std::fputs(table_of(options.request, study).c_str(), files.on_stdout() ? stderr : stdout);
+    const bool written =
+        files.write(json_of(options.request, study), svg_of(options.request, study), error);
+    if (!written) complain(error);
     if (wrong_of(study) > 0) {
         complain(std::to_string(wrong_of(study)) + " snapshots were not decoded to what was sent");
         return kExitFailure;

@@ -18,8 +18,6 @@
 
 namespace fts::lab {
 
-// The first part of every trace is not measured.
-inline constexpr double kUnmeasuredS = 10.0;
 // How many share what is encoded once.
 inline constexpr std::size_t kStudyClients = 64;
 // No baseline is older than a part can say.

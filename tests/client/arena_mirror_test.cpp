@@ -88,6 +88,48 @@ TEST(ArenaMirror, keeps_the_platform_of_the_level_that_is_drawn) {
     EXPECT_EQ(std::get<physics::Disc>(later.level.platform).radius_m, 6.0);
 }
 
+std::shared_ptr<Snapshot> two_balls(replication::Tick tick, double x_m, double vx_mps) {
+    auto result = snapshot(tick, -x_m);
+    result->balls[0].vx = replication::quantise(vx_mps, replication::kVelocityStepMps);
+    result->balls[0].radius = 128;
+    result->balls[0].mass = 256;
+    result->balls.push_back(result->balls[0]);
+    replication::BallState& other = result->balls[1];
+    other.id = 5;
+    other.x = -other.x;
+    other.vx = -other.vx;
+    return result;
+}
+
+TEST(ArenaMirror, draws_hits_between_snapshots_on_the_level_that_is_shown_if_it_is_to) {
+    for (const Flights flights : {Flights::kWithHits, Flights::kStraight}) {
+        ArenaMirror mirror(flights);
+        mirror.apply(welcome());
+        replication::LevelStarted level;
+        level.number = 1;
+        level.platform = physics::Disc{10.0};
+        mirror.apply(level);
+        mirror.add(two_balls(60, 0.65, 8.0));
+        mirror.add(two_balls(63, 0.75, -8.0));
+        const View view = mirror.view_at((60.0 + 0.3 / 16.0 * 60.0) / 60.0);
+        ASSERT_EQ(view.balls.size(), 2U);
+        const bool touch = view.balls[1].position_m.x() - view.balls[0].position_m.x() < 1.01;
+        EXPECT_EQ(touch, flights == Flights::kWithHits);
+    }
+}
+
+TEST(ArenaMirror, draws_on_whatever_platform_a_server_names) {
+    ArenaMirror mirror;
+    mirror.apply(welcome());
+    replication::LevelStarted level;
+    level.number = 1;
+    level.platform = physics::Disc{-3.0};
+    mirror.apply(level);
+    mirror.add(two_balls(60, 2.0, 1.0));
+    mirror.add(two_balls(63, 1.95, 1.0));
+    EXPECT_NEAR(mirror.view_at(61.5 / 60.0).balls[1].position_m.x(), 1.975, 1e-3);
+}
+
 TEST(ArenaMirror, counts_a_phase_down_to_zero_and_no_further) {
     ArenaMirror mirror;
     auto only = snapshot(60);

@@ -1,6 +1,7 @@
 // Where balls are drawn between two snapshots.
 #include "client/core/interpolation.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,46 @@ TEST(Interpolation, stays_sorted_by_id_whoever_comes_and_goes) {
             EXPECT_EQ(poses[i].position_m.x(), from.balls[i].id);
         }
     }
+}
+
+BallState heavy_ball(std::uint16_t id, double x_m, double y_m, double vx_mps, double vy_mps) {
+    BallState state = ball(id, x_m, y_m, vx_mps, vy_mps);
+    state.radius = 128;
+    state.mass = 256;
+    return state;
+}
+
+TEST(FlightInterpolation, draws_a_hit_between_snapshots_where_it_happened) {
+    const Snapshot from = at(10, {heavy_ball(1, -0.65, 0, 8, 0), heavy_ball(2, 0.65, 0, -8, 0)});
+    const Snapshot to = at(13, {heavy_ball(1, -0.75, 0, -8, 0), heavy_ball(2, 0.75, 0, 8, 0)});
+    FlightInterpolation flights(replication::Course{});
+    const double hit_tick = 10 + 0.3 / 16.0 * kRateHz;
+    const auto poses = flights.at(from, to, hit_tick);
+    ASSERT_EQ(poses.size(), 2U);
+    EXPECT_EQ(poses[0].state, &from.balls[0]);
+    EXPECT_NEAR(poses[0].position_m.x(), -0.5, replication::kPositionStepM);
+    EXPECT_NEAR(poses[1].position_m.x(), 0.5, replication::kPositionStepM);
+    // Straight lines are 7 cm short of it.
+    EXPECT_GT(std::abs(interpolate(from, to, hit_tick, kRateHz)[0].position_m.x() + 0.5), 0.07);
+}
+
+TEST(FlightInterpolation, goes_from_snapshot_to_snapshot_and_on_beyond_the_newest) {
+    const Snapshot first = at(10, {heavy_ball(1, 0, 0, 6, 0)});
+    const Snapshot second = at(12, {heavy_ball(1, 0.2, 0, 6, 0), heavy_ball(2, 3, 3, 0, 0)});
+    const Snapshot third = at(14, {heavy_ball(1, 0.4, 0, 6, 0), heavy_ball(2, 3, 3, 0, 0)});
+    FlightInterpolation flights(replication::Course{});
+    const auto x_at = [&](const Snapshot& from, const Snapshot& to, double tick) {
+        return flights.at(from, to, tick).front().position_m.x();
+    };
+    for (double tick = 10.0; tick <= 26.0; tick += 0.25) {
+        const Snapshot& from = tick < 12.0 ? first : tick < 14.0 ? second : third;
+        const Snapshot& to = tick < 12.0 ? second : third;
+        const double shown = std::min(tick, 14.0 + kMaxExtrapolationS * kRateHz);
+        EXPECT_NEAR(x_at(from, to, tick), (shown - 10.0) * 0.1, replication::kPositionStepM);
+    }
+    EXPECT_EQ(x_at(first, second, 9.0), 0.0);
+    EXPECT_EQ(flights.at(first, second, 11.9).size(), 1U);
+    EXPECT_EQ(flights.at(first, second, 12.0).size(), 2U);
 }
 
 }  // namespace
