@@ -51,7 +51,7 @@ bool StudyFiles::on_stdout() const {
 }
 
 bool StudyFiles::write(const std::string& json_text, const std::string& svg_text,
-                       std::string& error) {
+                       std::string& error) const {
     if (json) json->stream() << json_text;
     if (svg) svg->stream() << svg_text;
     return (!json || json->finish(error)) && (!svg || svg->finish(error));

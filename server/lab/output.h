@@ -33,7 +33,7 @@ struct StudyFiles {
 
     bool on_stdout() const;
     // False with `error` set when not everything was written.
-    bool write(const std::string& json_text, const std::string& svg_text, std::string& error);
+    bool write(const std::string& json_text, const std::string& svg_text, std::string& error) const;
 
     std::unique_ptr<Output> json, svg;
 };
