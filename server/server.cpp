@@ -100,11 +100,9 @@ void Server::play_one_tick() {
         stages_.enter(Stage::kMessages);
         deliver(*arena);
     }
-    const auto ticks_per_snapshot =
-        static_cast<std::uint64_t>(game::kTickRateHz / config_.snapshot_rate_hz);
     // Arenas take turns, so that the work of encoding spreads over the ticks.
     for (std::size_t i = 0; i < arenas_.size(); ++i) {
-        if ((ticks_ + i) % ticks_per_snapshot == 0) publish_snapshot(*arenas_[i]);
+        if (arenas_[i]->match.snapshot_is_due()) publish_snapshot(*arenas_[i]);
     }
 }
 
@@ -155,13 +153,14 @@ void Server::publish_snapshot(Arena& arena) {
 
 void Server::send_snapshot(Arena& arena, Session& session) {
     stages_.enter(Stage::kSnapshots);
-    const SnapshotFeed::Parts& parts = arena.feed.parts_for(session.held_tick);
-    if (parts.empty()) count("snapshot_too_large");
+    const SnapshotFeed::Coded& coded =
+        arena.feed.coded_for(session.held_tick, arena.match.events());
+    if (coded.parts.empty()) count("snapshot_too_large");
     stages_.enter(Stage::kSeal);
     const std::uint8_t input_slack = session.inputs.take_slack();
-    for (const std::vector<std::uint8_t>& part : parts) {
-        const auto bytes = replication::encode(
-            replication::SnapshotPacket{session.inputs.applied_sequence(), input_slack, part});
+    for (const std::vector<std::uint8_t>& part : coded.parts) {
+        const auto bytes = replication::encode(replication::SnapshotPacket{
+            session.inputs.applied_sequence(), input_slack, coded.kind, part});
         if (!listener_.send_unreliable(session.id, bytes)) count("snapshot_not_sent");
     }
 }

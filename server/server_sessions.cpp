@@ -81,9 +81,9 @@ void Server::on(const net::UnreliablePayload& event, double now_s) {
     }
     const replication::Tick newest =
         arenas_[static_cast<std::size_t>(session->arena)]->feed.newest_tick();
-    if (packet->acked_snapshot_tick <= newest && packet->acked_snapshot_tick > session->held_tick) {
-        session->held_tick = packet->acked_snapshot_tick;
-    }
+    const replication::Tick acked = packet->acked_snapshot_tick;
+    // 0: the client has lost what it held.
+    if (acked == 0 || (acked <= newest && acked > session->held_tick)) session->held_tick = acked;
 }
 
 void Server::handle(Session& session, const replication::JoinRequest& request, double now_s) {

@@ -5,6 +5,7 @@
 
 #include "common/net/connection.h"
 #include "common/replication/delta.h"
+#include "common/replication/snapshot_codec.h"
 
 namespace fts::server {
 
@@ -28,18 +29,32 @@ replication::Tick SnapshotFeed::newest_tick() const {
     return newest_ ? newest_->tick : 0;
 }
 
-const SnapshotFeed::Parts& SnapshotFeed::parts_for(replication::Tick held_tick) {
+const SnapshotFeed::Coded& SnapshotFeed::coded_for(replication::Tick held_tick,
+                                                   const EventLog& log) {
     assert(newest_);
-    auto baseline = held_tick < newest_->tick ? history_.find(held_tick) : nullptr;
+    const auto baseline = held_tick < newest_->tick ? history_.find(held_tick) : nullptr;
     const replication::Tick baseline_tick = baseline ? held_tick : 0;
 
     const auto found = encoded_.find(baseline_tick);
     if (found != encoded_.end()) return found->second;
-
-    static const replication::Snapshot kNothing;
     ++encoded_count_;
-    return encoded_[baseline_tick] =
-               replication::encode_delta(baseline ? *baseline : kNothing, *newest_, kMaxPartBytes);
+    return encoded_[baseline_tick] = encode(baseline.get(), log);
+}
+
+SnapshotFeed::Coded SnapshotFeed::encode(const replication::Snapshot* baseline,
+                                         const EventLog& log) const {
+    using Kind = replication::SnapshotPacket::Kind;
+    static const replication::Snapshot kNothing;
+    const bool can_be_replayed =
+        baseline && log.reaches_back_to(baseline->tick) &&
+        newest_->tick - baseline->tick <= replication::kMaxPredictedTicks;
+    if (can_be_replayed) {
+        const replication::ArenaEvents events = log.between(baseline->tick, newest_->tick);
+        auto part = replication::encode_events(*baseline, events, *newest_);
+        if (part.size() <= kMaxPartBytes) return {Kind::kEvents, {std::move(part)}};
+    }
+    return {Kind::kStates, replication::encode_delta(baseline ? *baseline : kNothing, *newest_,
+                                                     kMaxPartBytes)};
 }
 
 }  // namespace fts::server

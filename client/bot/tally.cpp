@@ -84,9 +84,10 @@ constexpr auto kMetrics = std::to_array<Metric>({
      session_sum<&Stats::snapshots_missed>},
     {"late", "late", "of the missed, those that came after a newer one", 0, 1.0,
      session_sum<&Stats::snapshots_late>},
-    {"malformed", "malformed", "snapshots and messages that made no sense", 0, 1.0,
+    {"malformed", "malformed", "snapshots and messages that made no sense or led elsewhere", 0, 1.0,
      [](Tallies t) {
          return session_sum<&Stats::snapshots_malformed>(t) +
+                session_sum<&Stats::snapshots_unlike>(t) +
                 session_sum<&Stats::messages_malformed>(t);
      }},
     {"loss", "loss %", "share of snapshots that never came at all, 0 to 1", 1, 100.0, loss},

@@ -99,6 +99,12 @@ replication::Tick ArenaMirror::newest_tick() const {
     return snapshots_.empty() ? 0 : snapshots_.back()->tick;
 }
 
+std::optional<replication::Course> ArenaMirror::course_of(int level) const {
+    const auto found = std::ranges::find(levels_, level, &replication::LevelStarted::number);
+    if (found == levels_.end()) return std::nullopt;
+    return replication::course_of(found->platform, found->solver);
+}
+
 const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
     const auto found = std::find_if(levels_.rbegin(), levels_.rend(),
                                     [&](const auto& level) { return level.number == number; });
@@ -160,7 +166,7 @@ void ArenaMirror::add_hits(View& view, double draw_tick) {
     while (!pending_hits_.empty() && pending_hits_.front().tick <= draw_tick) {
         const replication::HitState& hit = pending_hits_.front();
         view.hits.push_back({metres(hit.x, hit.y),
-                             replication::dequantise(hit.impulse, replication::kMassStepKg), hit.a,
+                             replication::dequantise(hit.impulse, replication::kImpulseStepNs), hit.a,
                              hit.b});
         pending_hits_.pop_front();
     }

@@ -11,6 +11,7 @@
 #include "client/core/interpolation.h"
 #include "client/core/view.h"
 #include "common/game/rules.h"
+#include "common/replication/lattice_world.h"
 #include "common/replication/messages.h"
 #include "common/replication/snapshot.h"
 
@@ -35,6 +36,8 @@ class ArenaMirror {
     bool has_snapshot() const { return !snapshots_.empty(); }
     replication::Tick newest_tick() const;
     const game::Tiers& tiers() const { return wallet_.tiers; }
+    // What both ends know of a level; empty before its message has come.
+    std::optional<replication::Course> course_of(int level) const;
     int tick_rate_hz() const { return tick_rate_hz_; }
     // Hits that gave way before they were seen.
     std::uint64_t hits_dropped_count() const { return hits_dropped_count_; }

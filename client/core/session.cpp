@@ -11,8 +11,7 @@
 #include "client/core/input_queue.h"
 #include "client/core/server_clock.h"
 #include "common/game/rules.h"
-#include "common/replication/delta.h"
-#include "common/replication/snapshot_history.h"
+#include "common/replication/snapshot_receiver.h"
 #include "common/replication/wire.h"
 
 namespace fts::client {
@@ -62,7 +61,7 @@ struct Session::Impl {
     void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
     void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
     void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
-    void take_snapshot(Snapshot&& snapshot);
+    void take_snapshot(std::shared_ptr<const Snapshot> snapshot);
     void count_missed_before(replication::Tick tick);
     void welcome(const replication::Welcome& message, double now_s);
     void send_due_inputs(double now_s);
@@ -78,8 +77,7 @@ struct Session::Impl {
     net::DisconnectReason end_reason = net::DisconnectReason::kClosed;
     std::optional<net::PublicKey> server_key;
 
-    replication::SnapshotAssembler assembler;
-    replication::SnapshotHistory history;
+    replication::SnapshotReceiver receiver;
     ArenaMirror arena;
     ServerClock clock;
     replication::Tick heard_tick = 0;
@@ -163,27 +161,21 @@ void Session::Impl::welcome(const replication::Welcome& message, double now_s) {
 
 void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s) {
     const auto packet = replication::decode_snapshot_packet(bytes);
-    const auto header = packet ? replication::peek_part(packet->part) : std::nullopt;
-    if (!header) {
+    if (!packet) {
         ++stats.snapshots_malformed;
         return;
     }
     inputs.acknowledge(packet->acked_input_sequence);
-    if (header->tick != heard_tick) {
-        clock.hear(double(header->tick) / arena.tick_rate_hz(), arrival_s);
-        if (header->tick > heard_tick) take_input_timing(*packet, now_s);
-        heard_tick = header->tick;
+    const replication::Tick tick = replication::tick_of(*packet);
+    if (tick != heard_tick) {
+        clock.hear(double(tick) / arena.tick_rate_hz(), arrival_s);
+        if (tick > heard_tick) take_input_timing(*packet, now_s);
+        heard_tick = tick;
     }
-    if (arena.has_snapshot() && header->tick <= arena.newest_tick()) {
-        if (!history.find(header->tick)) ++stats.snapshots_late;
-        return;
-    }
-    static const Snapshot kNothing;
-    const auto held = history.find(header->baseline_tick);
-    // A baseline that is no longer held makes the part unreadable; the gap shows up as missed.
-    if (!held && header->baseline_tick != 0) return;
-    auto whole = assembler.add(held ? *held : kNothing, packet->part);
-    if (whole) take_snapshot(std::move(*whole));
+    const auto whole_ticks = std::max(1LL, std::llround(ticks_per_snapshot));
+    auto snapshot = receiver.receive(*packet, static_cast<replication::Tick>(whole_ticks),
+                                     [this](int level) { return arena.course_of(level); });
+    if (snapshot) take_snapshot(std::move(snapshot));
 }
 
 void Session::Impl::take_input_timing(const replication::SnapshotPacket& packet, double now_s) {
@@ -206,17 +198,11 @@ void Session::Impl::count_missed_before(replication::Tick tick) {
     recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
 }
 
-void Session::Impl::take_snapshot(Snapshot&& snapshot) {
-    if (!replication::is_canonical(snapshot)) {
-        ++stats.snapshots_malformed;
-        return;
-    }
-    count_missed_before(snapshot.tick);
+void Session::Impl::take_snapshot(std::shared_ptr<const Snapshot> snapshot) {
+    count_missed_before(snapshot->tick);
     ++stats.snapshots_received;
-    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), arrival_s);
-    const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
-    history.add(shared);
-    arena.add(shared);
+    clock.observe(double(snapshot->tick) / arena.tick_rate_hz(), arrival_s);
+    arena.add(std::move(snapshot));
 }
 
 void Session::Impl::send_due_inputs(double now_s) {
@@ -228,7 +214,7 @@ void Session::Impl::send_due_inputs(double now_s) {
         inputs.push(held_input);
         ++stats.inputs_sent;
     }
-    dialer.send_unreliable(replication::encode(inputs.packet(arena.newest_tick())));
+    dialer.send_unreliable(replication::encode(inputs.packet(receiver.held_tick())));
 }
 
 void Session::Impl::send(const replication::ClientMessage& message) {
@@ -336,7 +322,10 @@ std::vector<Notice> Session::drain_notices() {
 
 SessionStats Session::stats() const {
     SessionStats stats = impl_->stats;
-    stats.snapshots_malformed += impl_->assembler.malformed_count();
+    const replication::SnapshotReceiver::Counts counts = impl_->receiver.counts();
+    stats.snapshots_late = counts.late;
+    stats.snapshots_malformed += counts.malformed;
+    stats.snapshots_unlike = counts.unlike;
     stats.inputs_given_up = impl_->inputs.given_up_count();
     stats.hits_dropped = impl_->arena.hits_dropped_count();
     stats.delay_limited = impl_->clock.delay_limited_count();

@@ -53,6 +53,7 @@ struct SessionStats {
     std::uint64_t snapshots_missed = 0;    // by tick numbers that never came in time
     std::uint64_t snapshots_late = 0;      // of the missed: parts that came after a newer snapshot
     std::uint64_t snapshots_malformed = 0;
+    std::uint64_t snapshots_unlike = 0;  // replayed to another state than the server's
     std::uint64_t messages_malformed = 0;
     std::uint64_t messages_unsent = 0;  // too long, or more than the channel holds
     std::uint64_t frames = 0;           // views made while playing

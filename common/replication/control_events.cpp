@@ -1,6 +1,7 @@
 #include "common/replication/control_events.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <tuple>
 
@@ -26,34 +27,28 @@ bool comes_before(const ControlEvent& a, const ControlEvent& b) {
     return std::tie(a.ball, a.tick) < std::tie(b.ball, b.tick);
 }
 
-// The events of one ball: whether there are any, each with its tick and control, and whether one
-// more follows.
+// The controls of one ball: whether there are any, each with its tick, and whether one more
+// follows.
 template <typename Coder>
-class EventCoder {
+class ControlCoder {
   public:
-    EventCoder(Coder& coder, Tick begin, Tick end) : coder_(coder), begin_(begin), end_(end) {}
+    // Of ticks in (begin, end].
+    ControlCoder(Coder& coder, Tick begin, Tick end) : coder_(coder), begin_(begin), end_(end) {}
 
     // Told to an encoder; a decoder puts what it finds at the end of `events`.
-    void code(const BallState& ball, std::span<const ControlEvent> told,
+    void code(std::uint16_t ball, bool is_player, std::span<const ControlEvent> told,
               std::vector<ControlEvent>& events) {
-        AdaptiveBit& any = any_[ball.kind != 0 ? 1 : 0];
-        bool more = coder_.bit(any, !told.empty());
-        for (Tick from = begin_; more && from < end_;) {
-            BallState said;
-            Tick tick = from;
-            if (!told.empty()) {
-                const ControlEvent& event = told.front();
-                tick = event.tick;
-                said.thrust_x = event.thrust_x;
-                said.thrust_y = event.thrust_y;
-                said.brake = event.brake;
-                told = told.subspan(1);
-            }
-            tick = from + coder_.even(tick - from, end_ - from);
-            thrust_.code(coder_, said);
-            events.push_back({tick, ball.id, said.thrust_x, said.thrust_y, said.brake});
-            from = tick + 1;
-            more = from < end_ && coder_.bit(more_, !told.empty());
+        bool more = coder_.bit(any_[is_player ? 1 : 0], !told.empty());
+        for (Tick after = begin_; more && after < end_;) {
+            ControlEvent event = told.empty() ? ControlEvent{.tick = after + 1} : told.front();
+            if (!told.empty()) told = told.subspan(1);
+            event.ball = ball;
+            event.tick = after + 1 + coder_.even(event.tick - after - 1, end_ - after);
+            thrust_.code(coder_, event);
+            event.dash = coder_.bit(dash_, event.dash);
+            events.push_back(event);
+            after = event.tick;
+            more = after < end_ && coder_.bit(more_, !told.empty());
         }
     }
 
@@ -61,93 +56,243 @@ class EventCoder {
     Coder& coder_;
     Tick begin_, end_;
     std::array<AdaptiveBit, 2> any_{AdaptiveBit{0x0200, 8}, AdaptiveBit{0x4000, 8}};
-    AdaptiveBit more_{0x1800, 8};
+    AdaptiveBit more_{0x1800, 8}, dash_{0x0200, 8};
     ThrustModel thrust_ = ThrustModel::of_keyboards();
 };
 
+// Everything else that happens. Every change takes some plain bits, so that what a part says is
+// never much longer than the part.
+template <typename Coder>
+class ChangeCoder {
+  public:
+    ChangeCoder(Coder& coder, Tick begin, Tick end) : coder_(coder), after_(begin), end_(end) {}
+
+    bool another(bool more) { return coder_.bit(another_, more); }
+    void code(ArenaChange& change) {
+        constexpr auto kKinds = static_cast<std::uint32_t>(kLastChange) + 1;
+        change.tick = after_ + coder_.even(change.tick - after_, end_ - after_ + 1);
+        change.kind = static_cast<ArenaChange::Kind>(
+            coder_.even(static_cast<std::uint32_t>(change.kind), kKinds));
+        switch (change.kind) {
+            case ArenaChange::Kind::kBallPut:
+                return put(change.ball);
+            case ArenaChange::Kind::kBallGone:
+                change.ball.id = id(change.ball.id);
+                return;
+            case ArenaChange::Kind::kPhase:
+                change.phase = static_cast<game::Phase>(
+                    coder_.raw(static_cast<std::uint32_t>(change.phase), 2));
+                change.phase_end_tick = wide(change.phase_end_tick);
+                return;
+            case ArenaChange::Kind::kCoinPut:
+                change.coin.id = id(change.coin.id);
+                change.coin.value_coins = id(change.coin.value_coins);
+                change.coin.x = number(change.coin.x);
+                change.coin.y = number(change.coin.y);
+                return;
+            case ArenaChange::Kind::kCoinGone:
+                change.coin.id = id(change.coin.id);
+                return;
+        }
+    }
+    void reached(Tick tick) { after_ = tick; }
+
+  private:
+    void put(BallState& ball) {
+        ball.id = id(ball.id);
+        for (std::int32_t* field : {&ball.x, &ball.y, &ball.vx, &ball.vy}) *field = number(*field);
+        thrust_.code(coder_, ball);
+        ball.radius = id(ball.radius);
+        ball.mass = wide(ball.mass);
+        ball.kind = static_cast<std::uint8_t>(coder_.raw(ball.kind, 8));
+        ball.behaviour = static_cast<std::uint8_t>(coder_.raw(ball.behaviour, 8));
+        ball.player_id = id(ball.player_id);
+        for (std::uint32_t* trait : {&ball.handling.acceleration, &ball.handling.drag,
+                                     &ball.handling.braking, &ball.handling.dash}) {
+            *trait = wide(*trait);
+        }
+    }
+    std::uint16_t id(std::uint16_t value) {
+        return static_cast<std::uint16_t>(coder_.raw(value, 16));
+    }
+    std::uint32_t wide(std::uint32_t value) {
+        const std::uint32_t high = coder_.raw(value >> 16, 16);
+        return high << 16 | coder_.raw(value & 0xFFFFU, 16);
+    }
+    std::int32_t number(std::int32_t value) {
+        return static_cast<std::int32_t>(wide(static_cast<std::uint32_t>(value)));
+    }
+
+    Coder& coder_;
+    Tick after_, end_;
+    AdaptiveBit another_{0x0400, 8};
+    ThrustModel thrust_ = ThrustModel::of_keyboards();
+};
+
+struct Steered {
+    std::uint16_t id = 0;
+    bool is_player = false;
+};
+// Whoever may be steered, ascending by id.
+std::vector<Steered> steered_of(const Snapshot& baseline, const std::vector<ArenaChange>& changes) {
+    constexpr auto kPlayer = static_cast<std::uint8_t>(BallKind::kPlayer);
+    std::vector<Steered> all;
+    all.reserve(baseline.balls.size());
+    for (const BallState& ball : baseline.balls) all.push_back({ball.id, ball.kind == kPlayer});
+    const std::size_t held = all.size();
+    for (const ArenaChange& change : changes) {
+        if (change.kind != ArenaChange::Kind::kBallPut) continue;
+        all.push_back({change.ball.id, change.ball.kind == kPlayer});
+    }
+    if (all.size() == held) return all;
+    std::ranges::stable_sort(all, {}, &Steered::id);
+    const auto repeated = std::ranges::unique(all, {}, &Steered::id);
+    all.erase(repeated.begin(), repeated.end());
+    return all;
+}
+
+bool is_known(const ArenaChange& change) {
+    return change.ball.kind <= static_cast<std::uint8_t>(BallKind::kPlayer) &&
+           change.ball.behaviour <= static_cast<std::uint8_t>(kLastBehaviour);
+}
+
 }  // namespace
 
-bool is_canonical(std::span<const ControlEvent> events) {
-    return std::adjacent_find(events.begin(), events.end(), [](const auto& a, const auto& b) {
-               return !comes_before(a, b);
-           }) == events.end();
+ArenaChange ArenaChange::ball_put(Tick tick, const BallState& ball) {
+    ArenaChange change;
+    change.kind = Kind::kBallPut;
+    change.tick = tick;
+    change.ball = ball;
+    return change;
 }
 
-std::vector<BallState> replay(const Course& course, std::span<const BallState> baseline,
-                              Tick baseline_tick, Tick tick, Tick snapshot_ticks,
-                              std::span<const ControlEvent> events) {
-    assert(snapshot_ticks > 0);
-    std::vector<ControlEvent> in_time(events.begin(), events.end());
-    std::stable_sort(in_time.begin(), in_time.end(),
-                     [](const auto& a, const auto& b) { return a.tick < b.tick; });
-    LatticeWorld world(course, baseline);
-    auto next = in_time.begin();
-    for (Tick now = baseline_tick; now < tick; ++now) {
-        for (; next != in_time.end() && next->tick <= now; ++next) {
-            const auto ball = std::lower_bound(
-                baseline.begin(), baseline.end(), next->ball,
-                [](const BallState& state, std::uint16_t id) { return state.id < id; });
-            if (ball == baseline.end() || ball->id != next->ball) continue;
-            BallState controls = *ball;
-            controls.thrust_x = next->thrust_x;
-            controls.thrust_y = next->thrust_y;
-            controls.brake = next->brake;
-            world.steer(static_cast<std::size_t>(ball - baseline.begin()), controls);
-        }
-        world.advance(course.tick_s);
-        if ((now + 1 - baseline_tick) % snapshot_ticks == 0) world.snap();
-    }
-    return world.balls();
+ArenaChange ArenaChange::ball_gone(Tick tick, std::uint16_t id) {
+    ArenaChange change;
+    change.kind = Kind::kBallGone;
+    change.tick = tick;
+    change.ball.id = id;
+    return change;
 }
 
-std::uint32_t digest_of(std::span<const BallState> balls) {
+ArenaChange ArenaChange::phase_begun(Tick tick, game::Phase phase, Tick phase_end_tick) {
+    ArenaChange change;
+    change.kind = Kind::kPhase;
+    change.tick = tick;
+    change.phase = phase;
+    change.phase_end_tick = phase_end_tick;
+    return change;
+}
+
+ArenaChange ArenaChange::coin_put(Tick tick, const CoinState& coin) {
+    ArenaChange change;
+    change.kind = Kind::kCoinPut;
+    change.tick = tick;
+    change.coin = coin;
+    return change;
+}
+
+ArenaChange ArenaChange::coin_gone(Tick tick, std::uint16_t id) {
+    ArenaChange change;
+    change.kind = Kind::kCoinGone;
+    change.tick = tick;
+    change.coin.id = id;
+    return change;
+}
+
+bool is_canonical(const ArenaEvents& events) {
+    const auto out_of_order = [](const ControlEvent& a, const ControlEvent& b) {
+        return !comes_before(a, b);
+    };
+    return std::ranges::adjacent_find(events.controls, out_of_order) == events.controls.end() &&
+           std::ranges::is_sorted(events.changes, {}, &ArenaChange::tick);
+}
+
+std::uint32_t outcome_digest_of(const Snapshot& snapshot) {
     StateDigest digest;
-    for (const BallState& ball : balls) digest.add(ball);
+    for (const BallState& ball : snapshot.balls) digest.add(ball);
+    for (const CoinState& coin : snapshot.coins) {
+        digest.add(coin.id | std::uint32_t{coin.value_coins} << 16);
+        digest.add(coin.x);
+        digest.add(coin.y);
+    }
+    digest.add(std::uint32_t{snapshot.arena} |
+               static_cast<std::uint32_t>(snapshot.phase) << 8 | std::uint32_t{snapshot.level} << 16);
+    digest.add(snapshot.phase_end_tick);
     return digest.value();
 }
 
-std::vector<std::uint8_t> encode_events(std::span<const BallState> baseline, Tick baseline_tick,
-                                        Tick tick, std::span<const ControlEvent> events,
-                                        std::span<const BallState> outcome) {
+std::vector<std::uint8_t> encode_events(const Snapshot& baseline, const ArenaEvents& events,
+                                        const Snapshot& outcome) {
     assert(is_canonical(events));
-    assert(tick > baseline_tick && tick - baseline_tick <= kMaxPredictedTicks);
+    assert(outcome.tick > baseline.tick && outcome.tick - baseline.tick <= kMaxPredictedTicks);
+    assert(outcome.arena == baseline.arena && outcome.level == baseline.level);
     RangeEncoder encoder;
-    EventCoder<RangeEncoder> coder(encoder, baseline_tick, tick);
-    std::vector<ControlEvent> said;
-    for (const BallState& ball : baseline) {
-        const auto end = std::find_if(events.begin(), events.end(), [&](const ControlEvent& event) {
-            return event.ball != ball.id;
-        });
-        const auto count = static_cast<std::size_t>(end - events.begin());
-        coder.code(ball, events.first(count), said);
-        events = events.subspan(count);
+    ChangeCoder<RangeEncoder> changes(encoder, baseline.tick + 1, outcome.tick);
+    for (ArenaChange change : events.changes) {
+        changes.another(true);
+        changes.code(change);
+        changes.reached(change.tick);
     }
-    assert(events.empty());
+    changes.another(false);
+    ControlCoder<RangeEncoder> controls(encoder, baseline.tick, outcome.tick);
+    std::span<const ControlEvent> left = events.controls;
+    std::vector<ControlEvent> said;
+    for (const Steered& ball : steered_of(baseline, events.changes)) {
+        std::size_t count = 0;
+        while (count < left.size() && left[count].ball == ball.id) ++count;
+        controls.code(ball.id, ball.is_player, left.first(count), said);
+        left = left.subspan(count);
+    }
+    assert(left.empty());
     ByteWriter out;
-    out.varint(tick);
-    out.u8(static_cast<std::uint8_t>(tick - baseline_tick));
+    out.varint(outcome.tick);
+    out.u8(static_cast<std::uint8_t>(outcome.tick - baseline.tick));
     const std::vector<std::uint8_t> bits = encoder.finish();
-    const std::uint32_t telling = digest_of_telling(tick, baseline_tick, bits);
-    out.little_endian(digest_of(outcome) ^ telling, StateDigest::kBytes);
+    const std::uint32_t telling = digest_of_telling(outcome.tick, baseline.tick, bits);
+    out.little_endian(outcome_digest_of(outcome) ^ telling, StateDigest::kBytes);
     out.append(bits);
     return out.take();
 }
 
-std::optional<ControlPart> decode_events(std::span<const BallState> baseline, Tick baseline_tick,
+namespace {
+
+std::optional<ControlPartHeader> read_header(ByteReader& in) {
+    ControlPartHeader header;
+    header.tick = in.varint();
+    const std::uint32_t age = in.u8();
+    if (in.failed() || age == 0 || age >= header.tick) return std::nullopt;
+    header.baseline_tick = header.tick - age;
+    return header;
+}
+
+}  // namespace
+
+std::optional<ControlPartHeader> peek_control_part(std::span<const std::uint8_t> bytes) {
+    ByteReader in(bytes);
+    return read_header(in);
+}
+
+std::optional<ControlPart> decode_events(const Snapshot& baseline,
                                          std::span<const std::uint8_t> bytes) {
     ByteReader in(bytes);
-    ControlPart part;
-    part.tick = in.varint();
-    const std::uint32_t age = in.u8();
-    part.outcome_digest = static_cast<std::uint32_t>(in.little_endian(StateDigest::kBytes));
-    if (in.failed() || age == 0 || age >= part.tick) return std::nullopt;
-    part.baseline_tick = part.tick - age;
-    if (part.baseline_tick != baseline_tick) return std::nullopt;
-    part.outcome_digest ^= digest_of_telling(part.tick, part.baseline_tick, in.rest());
+    const auto header = read_header(in);
+    const auto digest = static_cast<std::uint32_t>(in.little_endian(StateDigest::kBytes));
+    if (in.failed() || !header || header->baseline_tick != baseline.tick) return std::nullopt;
+    ControlPart part{.tick = header->tick, .outcome_digest = digest, .events = {}};
+    part.outcome_digest ^= digest_of_telling(part.tick, baseline.tick, in.rest());
     RangeDecoder decoder(in.rest());
-    EventCoder<RangeDecoder> coder(decoder, part.baseline_tick, part.tick);
-    for (const BallState& ball : baseline) {
-        coder.code(ball, {}, part.events);
+    ChangeCoder<RangeDecoder> changes(decoder, baseline.tick + 1, part.tick);
+    while (changes.another(false)) {
+        ArenaChange change;
+        change.tick = baseline.tick + 1;
+        changes.code(change);
+        if (decoder.ran_out() || !is_known(change)) return std::nullopt;
+        changes.reached(change.tick);
+        part.events.changes.push_back(change);
+    }
+    ControlCoder<RangeDecoder> controls(decoder, baseline.tick, part.tick);
+    for (const Steered& ball : steered_of(baseline, part.events.changes)) {
+        controls.code(ball.id, ball.is_player, {}, part.events.controls);
         if (decoder.ran_out()) return std::nullopt;
     }
     if (!decoder.complete()) return std::nullopt;

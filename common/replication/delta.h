@@ -16,10 +16,10 @@
 
 namespace fts::replication {
 
-inline constexpr std::size_t kMinPartBytes = 64;
+inline constexpr std::size_t kMinPartBytes = 96;
 // With parts of this size or more the greatest snapshot (65536 balls and as many coins, all new,
 // and 100,000 hits) fits kMaxParts; delta_encode.cpp has the proof.
-inline constexpr std::size_t kAmplePartBytes = 512;
+inline constexpr std::size_t kAmplePartBytes = 600;
 inline constexpr std::size_t kMaxParts = 16383;
 inline constexpr Tick kMaxBaselineAgeTicks = 255;  // about four seconds
 

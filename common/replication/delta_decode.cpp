@@ -50,6 +50,12 @@ void read_body_changes(ByteReader& in, BallState& ball) {
         if (ball.behaviour > static_cast<std::uint8_t>(kLastBehaviour)) in.fail();
     }
     if (mask & kPlayerChanged) ball.player_id = static_cast<std::uint16_t>(in.little_endian(2));
+    if (mask & kHandlingChanged) {
+        ball.handling.acceleration = in.varint();
+        ball.handling.drag = in.varint();
+        ball.handling.braking = in.varint();
+        ball.handling.dash = in.varint();
+    }
 }
 
 BallState read_changes(ByteReader& in, std::uint8_t mask, const BallState& before,
@@ -73,7 +79,6 @@ BallState read_changes(ByteReader& in, std::uint8_t mask, const BallState& befor
         ball.thrust_y = static_cast<std::int8_t>(in.u8());
     }
     ball.brake = before.brake != ((mask & kBrakeChanged) != 0);
-    ball.dashed = (mask & kDashed) != 0;
     if (mask & kBodyChanged) read_body_changes(in, ball);
     return ball;
 }

@@ -52,16 +52,23 @@ void write_body_changes(ByteWriter& out, const BallState& before, const BallStat
     if (now.mass != before.mass) mask |= mass_is_wide ? kMassChanged | kMassIsWide : kMassChanged;
     if (kind_changed) mask |= kKindChanged;
     if (now.player_id != before.player_id) mask |= kPlayerChanged;
+    if (now.handling != before.handling) mask |= kHandlingChanged;
     out.u8(mask);
     if (mask & kRadiusChanged) out.little_endian(now.radius, 2);
     if (mask & kMassChanged) out.little_endian(now.mass, mass_is_wide ? 4 : 2);
     if (kind_changed) out.u8(static_cast<std::uint8_t>(now.kind << 4 | now.behaviour));
     if (mask & kPlayerChanged) out.little_endian(now.player_id, 2);
+    if (mask & kHandlingChanged) {
+        out.varint(now.handling.acceleration);
+        out.varint(now.handling.drag);
+        out.varint(now.handling.braking);
+        out.varint(now.handling.dash);
+    }
 }
 
 bool same_body(const BallState& a, const BallState& b) {
     return a.radius == b.radius && a.mass == b.mass && a.kind == b.kind &&
-           a.behaviour == b.behaviour && a.player_id == b.player_id;
+           a.behaviour == b.behaviour && a.player_id == b.player_id && a.handling == b.handling;
 }
 
 void write_changes(ByteWriter& out, const BallState& before, const BallState& now,
@@ -77,7 +84,6 @@ void write_changes(ByteWriter& out, const BallState& before, const BallState& no
     if (dx != 0 || dy != 0) mask |= kPositionChanged;
     if (now.thrust_x != before.thrust_x || now.thrust_y != before.thrust_y) mask |= kThrustChanged;
     if (now.brake != before.brake) mask |= kBrakeChanged;
-    if (now.dashed) mask |= kDashed;
     if (!same_body(before, now)) mask |= kBodyChanged;
 
     const bool barely_moved = dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;

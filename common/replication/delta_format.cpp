@@ -24,10 +24,14 @@ void add_ball(Fnv1a& hash, const BallState& ball) {
     hash.add(ball.vx);
     hash.add(ball.vy);
     hash.add(byte(ball.thrust_x) | byte(ball.thrust_y) << 8 | std::uint32_t{ball.brake} << 16 |
-             std::uint32_t{ball.dashed} << 17 | std::uint32_t{ball.kind} << 18 |
+             std::uint32_t{ball.kind} << 18 |
              std::uint32_t{ball.behaviour} << 19);
     hash.add(std::uint32_t{ball.radius});
     hash.add(ball.mass);
+    hash.add(ball.handling.acceleration);
+    hash.add(ball.handling.drag);
+    hash.add(ball.handling.braking);
+    hash.add(ball.handling.dash);
 }
 
 }  // namespace
@@ -64,7 +68,6 @@ BallState predicted(const BallState& before, std::uint32_t ticks) {
     BallState ball = before;
     ball.x = predicted_position(before.x, before.vx, before.vx, ticks);
     ball.y = predicted_position(before.y, before.vy, before.vy, ticks);
-    ball.dashed = false;
     return ball;
 }
 

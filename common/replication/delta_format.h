@@ -64,23 +64,23 @@ inline constexpr std::uint8_t kVelocityChanged = 0x01;
 inline constexpr std::uint8_t kPositionChanged = 0x02;
 inline constexpr std::uint8_t kThrustChanged = 0x04;
 inline constexpr std::uint8_t kBrakeChanged = 0x08;
-inline constexpr std::uint8_t kDashed = 0x10;
 inline constexpr std::uint8_t kBodyChanged = 0x20;
-inline constexpr std::uint8_t kKnownBallChanges = 0x3F;
+inline constexpr std::uint8_t kKnownBallChanges = 0x2F;
 
 inline constexpr std::uint8_t kRadiusChanged = 0x01;
 inline constexpr std::uint8_t kMassChanged = 0x02;
 inline constexpr std::uint8_t kMassIsWide = 0x04;
 inline constexpr std::uint8_t kKindChanged = 0x08;
 inline constexpr std::uint8_t kPlayerChanged = 0x10;
-inline constexpr std::uint8_t kKnownBodyChanges = 0x1F;
+inline constexpr std::uint8_t kHandlingChanged = 0x20;
+inline constexpr std::uint8_t kKnownBodyChanges = 0x3F;
 
 inline constexpr std::uint8_t kCoinMoved = 0x01;
 inline constexpr std::uint8_t kCoinValueChanged = 0x02;
 inline constexpr std::uint8_t kKnownCoinChanges = 0x03;
 
 inline constexpr std::size_t kMaxPairBytes = 9;
-inline constexpr std::size_t kMaxBodyBytes = 1 + 2 + 4 + 1 + 2;
+inline constexpr std::size_t kMaxBodyBytes = 1 + 2 + 4 + 1 + 2 + 4 * kMaxVarintBytes;
 inline constexpr std::size_t kMaxIdBytes = 3;
 inline constexpr std::size_t kMaxAddedBytes = 1 + kMaxIdBytes;
 inline constexpr std::size_t kMaxBallBytes =

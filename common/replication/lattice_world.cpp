@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+
+#include "common/game/rules.h"
 
 namespace fts::replication {
 namespace {
@@ -33,68 +36,175 @@ physics::Vec2d place_inside(physics::Vec2d place_m, double radius_m, const physi
     return place_m.cwiseMin(scene.walls->max_m - margin).cwiseMax(scene.walls->min_m + margin);
 }
 
+std::uint32_t steps(double value, double step) {
+    constexpr double kGreatest = std::numeric_limits<std::uint32_t>::max();
+    return static_cast<std::uint32_t>(std::clamp(std::round(value / step), 0.0, kGreatest));
+}
+
+physics::BodyDef body_of(const Course& course, const BallState& ball) {
+    const Lattice& lattice = course.lattice;
+    physics::BodyDef body;
+    body.radius_m = fitting_radius_m(ball, course.scene);
+    body.mass_kg = std::max(kLeastMassKg, ball.mass * kMassStepKg);
+    body.position_m = place_inside({dequantise(ball.x, lattice.position_step_m),
+                                    dequantise(ball.y, lattice.position_step_m)},
+                                   body.radius_m, course.scene);
+    body.velocity_mps = physics::Vec2d{dequantise(ball.vx, lattice.velocity_step_mps),
+                                       dequantise(ball.vy, lattice.velocity_step_mps)}
+                            .cwiseMin(physics::kMaxSpeedMps)
+                            .cwiseMax(-physics::kMaxSpeedMps);
+    return body;
+}
+
+game::InputCommand held_by(const BallState& ball) {
+    return {.thrust_x = ball.thrust_x, .thrust_y = ball.thrust_y, .brake = ball.brake};
+}
+
 }  // namespace
+
+HandlingState quantised(const game::Handling& handling) {
+    return {.acceleration = steps(handling.acceleration_mps2, kAccelerationStepMps2),
+            .drag = steps(handling.drag_per_s, kDragStepPerS),
+            .braking = steps(handling.braking_per_s, kDragStepPerS),
+            .dash = steps(handling.dash_mps, kDashStepMps)};
+}
+
+game::Handling handling_of(const BallState& ball) {
+    return {.acceleration_mps2 = ball.handling.acceleration * kAccelerationStepMps2,
+            .drag_per_s = ball.handling.drag * kDragStepPerS,
+            .braking_per_s = ball.handling.braking * kDragStepPerS,
+            .dash_mps = ball.handling.dash * kDashStepMps};
+}
+
+Course course_of(const physics::Platform& platform, const physics::SolverChoice& solver) {
+    Course course;
+    course.scene.platform = platform;
+    course.solver = solver;
+    course.tick_s = game::kTickDurationS;
+    course.control_of = [](const BallState& ball) {
+        return game::control_for(handling_of(ball), held_by(ball));
+    };
+    course.dash_of = [](const BallState& ball) {
+        return game::dash_for(handling_of(ball), held_by(ball));
+    };
+    return course;
+}
 
 physics::Scene scene_of(const Course& course, std::span<const BallState> balls) {
     physics::Scene scene = course.scene;
     scene.bodies.clear();
     scene.bodies.reserve(balls.size());
-    const Lattice& lattice = course.lattice;
-    for (const BallState& ball : balls) {
-        physics::BodyDef body;
-        body.radius_m = fitting_radius_m(ball, scene);
-        body.mass_kg = std::max(kLeastMassKg, ball.mass * kMassStepKg);
-        body.position_m = place_inside({dequantise(ball.x, lattice.position_step_m),
-                                        dequantise(ball.y, lattice.position_step_m)},
-                                       body.radius_m, scene);
-        body.velocity_mps = physics::Vec2d{dequantise(ball.vx, lattice.velocity_step_mps),
-                                           dequantise(ball.vy, lattice.velocity_step_mps)}
-                                .cwiseMin(physics::kMaxSpeedMps)
-                                .cwiseMax(-physics::kMaxSpeedMps);
-        scene.bodies.push_back(body);
-    }
+    for (const BallState& ball : balls) scene.bodies.push_back(body_of(course, ball));
     return scene;
 }
 
 LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> balls)
-    : course_(course), balls_(balls.begin(), balls.end()), world_(scene_of(course, balls)) {
-    assert(!course_.scene.platform && !course_.scene.periodic);
-    steer_all();
+    : course_(course),
+      balls_(balls.begin(), balls.end()),
+      world_(scene_of(course, balls), course.solver) {
+    assert(!course_.scene.periodic);
+    list_all();
 }
 
-void LatticeWorld::steer_all() {
-    if (!course_.control_of) return;
-    for (std::size_t i = 0; i < balls_.size(); ++i) {
-        const physics::Control<double> control = course_.control_of(balls_[i]);
-        if (control.acts()) world_.set_control(world_.ids()[i], control);
+// A world that was just made has its bodies in the slots that their balls have.
+void LatticeWorld::list_all() {
+    entries_.clear();
+    entries_.reserve(balls_.size());
+    for (std::size_t slot = 0; slot < balls_.size(); ++slot) {
+        entries_.push_back({balls_[slot].id, world_.ids()[slot]});
+        if (!course_.control_of) continue;
+        const physics::Control<double> control = course_.control_of(balls_[slot]);
+        if (control.acts()) world_.set_control(entries_.back().body, control);
     }
 }
 
-void LatticeWorld::steer(std::size_t index, const BallState& controls) {
-    BallState& ball = balls_[index];
+std::vector<LatticeWorld::Entry>::const_iterator LatticeWorld::find(std::uint16_t id) const {
+    return std::lower_bound(entries_.begin(), entries_.end(), id,
+                            [](const Entry& entry, std::uint16_t wanted) {
+                                return entry.id < wanted;
+                            });
+}
+
+std::optional<std::size_t> LatticeWorld::slot_of(std::uint16_t id) const {
+    const auto entry = find(id);
+    if (entry == entries_.end() || entry->id != id) return std::nullopt;
+    return entry->body.index;
+}
+
+physics::BodyView<double> LatticeWorld::body(std::uint16_t id) const {
+    const auto entry = find(id);
+    assert(entry != entries_.end() && entry->id == id);
+    return world_.body(entry->body);
+}
+
+void LatticeWorld::steer(std::size_t slot, const BallState& controls) {
+    BallState& ball = balls_[slot];
     ball.thrust_x = controls.thrust_x;
     ball.thrust_y = controls.thrust_y;
     ball.brake = controls.brake;
-    if (course_.control_of) world_.set_control(world_.ids()[index], course_.control_of(ball));
+    if (course_.control_of) world_.set_control(find(ball.id)->body, course_.control_of(ball));
 }
 
-void LatticeWorld::advance(double span_s) {
-    world_.step(span_s);
+void LatticeWorld::dash(std::size_t slot) {
+    const physics::BodyId body = find(balls_[slot].id)->body;
+    world_.set_velocity(body, world_.body(body).velocity_mps + course_.dash_of(balls_[slot]));
+}
+
+bool LatticeWorld::put(const BallState& ball) {
+    const auto place = find(ball.id);
+    if (place != entries_.end() && place->id == ball.id) {
+        BallState& held = balls_[place->body.index];
+        held.mass = ball.mass;
+        held.handling = ball.handling;
+        world_.set_mass(place->body, body_of(course_, ball).mass_kg);
+        if (course_.control_of) world_.set_control(place->body, course_.control_of(held));
+        return true;
+    }
+    const auto body = world_.add(body_of(course_, ball));
+    if (!body) return false;
+    if (balls_.size() <= body->index) balls_.resize(body->index + 1);
+    balls_[body->index] = ball;
+    entries_.insert(place, {ball.id, *body});
+    if (course_.control_of) world_.set_control(*body, course_.control_of(ball));
+    return true;
+}
+
+void LatticeWorld::remove(std::uint16_t id) {
+    const auto entry = find(id);
+    if (entry == entries_.end() || entry->id != id) return;
+    world_.remove(entry->body);
+    entries_.erase(entry);
+}
+
+void LatticeWorld::halt() {
+    for (const Entry& entry : entries_) {
+        world_.set_velocity(entry.body, physics::Vec2d::Zero());
+        steer(entry.body.index, {});
+    }
+}
+
+physics::StepReport LatticeWorld::advance(double span_s) {
+    const physics::StepReport report = world_.step(span_s);
+    for (const physics::Fall<double>& fall : world_.falls()) {
+        entries_.erase(find(balls_[fall.id.index].id));
+    }
+    return report;
 }
 
 void LatticeWorld::snap() {
     balls_ = balls();
-    world_ = physics::World<double>(scene_of(course_, balls_));
-    steer_all();
+    world_ = physics::World<double>(scene_of(course_, balls_), course_.solver);
+    list_all();
 }
 
 std::vector<BallState> LatticeWorld::balls() const {
-    std::vector<BallState> all = balls_;
+    std::vector<BallState> all;
+    all.reserve(entries_.size());
     const Lattice& lattice = course_.lattice;
     const auto& walls = course_.scene.walls;
-    for (const physics::BodyId id : world_.ids()) {
-        const physics::BodyView<double> body = world_.body(id);
-        BallState& ball = all[id.index];
+    for (const Entry& entry : entries_) {
+        const physics::BodyView<double> body = world_.body(entry.body);
+        BallState& ball = all.emplace_back(balls_[entry.body.index]);
         ball.vx = quantise(body.velocity_mps.x(), lattice.velocity_step_mps);
         ball.vy = quantise(body.velocity_mps.y(), lattice.velocity_step_mps);
         if (walls) {

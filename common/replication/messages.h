@@ -12,6 +12,7 @@
 #include "common/game/level.h"
 #include "common/game/upgrades.h"
 #include "common/physics/scene.h"
+#include "common/physics/solver_choice.h"
 #include "common/replication/snapshot.h"
 
 namespace fts::replication {
@@ -54,6 +55,7 @@ struct LevelStarted {
     std::string hint;
     physics::Platform platform;
     int ai_balls = 0;
+    physics::SolverChoice solver;  // both ends simulate with it
 };
 enum class LevelOutcome : std::uint8_t { kCleared, kLost, kTimeUp, kCampaignComplete };
 struct LevelEnded {
@@ -146,11 +148,16 @@ inline constexpr std::uint8_t kMaxInputSlack = 254;  // that long, or longer
 inline constexpr std::uint8_t kNoInputWaited = 255;  // a tick had to do without
 
 struct SnapshotPacket {
+    enum class Kind : std::uint8_t {
+        kStates,  // delta.h
+        kEvents,  // control_events.h
+    };
     std::uint32_t acked_input_sequence = 0;  // newest input the server has applied; 0: none
     // The least time that an input waited for its tick since the snapshot before, in
     // kInputSlackStepTicks rounded down.
     std::uint8_t input_slack = kNoInputWaited;
-    std::vector<std::uint8_t> part;  // delta.h
+    Kind kind = Kind::kStates;
+    std::vector<std::uint8_t> part;
 };
 
 }  // namespace fts::replication

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/replication/byte_stream.h"
+#include "common/replication/control_events.h"
 #include "common/replication/delta.h"
 #include "common/replication/wire.h"
 
@@ -83,7 +84,7 @@ std::optional<InputPacket> decode_input_packet(std::span<const std::uint8_t> byt
 
 std::vector<std::uint8_t> encode(const SnapshotPacket& packet) {
     ByteWriter out;
-    out.u8(kSnapshotPacketTag);
+    out.u8(packet.kind == SnapshotPacket::Kind::kStates ? kStatesPacketTag : kEventsPacketTag);
     out.varint(packet.acked_input_sequence);
     out.u8(packet.input_slack);
     out.append(packet.part);
@@ -92,11 +93,18 @@ std::vector<std::uint8_t> encode(const SnapshotPacket& packet) {
 
 std::optional<SnapshotPacket> decode_snapshot_packet(std::span<const std::uint8_t> bytes) {
     ByteReader in(bytes);
-    if (in.u8() != kSnapshotPacketTag) return std::nullopt;
+    const std::uint8_t tag = in.u8();
+    if (tag != kStatesPacketTag && tag != kEventsPacketTag) return std::nullopt;
     SnapshotPacket packet;
+    packet.kind =
+        tag == kStatesPacketTag ? SnapshotPacket::Kind::kStates : SnapshotPacket::Kind::kEvents;
     packet.acked_input_sequence = in.varint();
     packet.input_slack = in.u8();
-    if (in.failed() || !peek_part(in.rest())) return std::nullopt;
+    if (in.failed()) return std::nullopt;
+    const bool is_a_part = packet.kind == SnapshotPacket::Kind::kStates
+                               ? peek_part(in.rest()).has_value()
+                               : peek_control_part(in.rest()).has_value();
+    if (!is_a_part) return std::nullopt;
     packet.part.assign(in.rest().begin(), in.rest().end());
     return packet;
 }

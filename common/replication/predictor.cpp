@@ -74,7 +74,6 @@ Prediction predict(const Course& course, const Steering& steering, Foresight for
         state.thrust_x = baseline[i].thrust_x;
         state.thrust_y = baseline[i].thrust_y;
         state.brake = baseline[i].brake;
-        state.dashed = false;
     }
     return prediction;
 }

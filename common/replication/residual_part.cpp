@@ -43,7 +43,16 @@ Doubt widened(Doubt doubt, double width) {
 
 bool same_body(const BallState& a, const BallState& b) {
     return a.radius == b.radius && a.mass == b.mass && a.kind == b.kind &&
-           a.behaviour == b.behaviour && a.player_id == b.player_id && a.dashed == b.dashed;
+           a.behaviour == b.behaviour && a.player_id == b.player_id && a.handling == b.handling;
+}
+
+void take_body(const BallState& from, BallState& to) {
+    to.radius = from.radius;
+    to.mass = from.mass;
+    to.kind = from.kind;
+    to.behaviour = from.behaviour;
+    to.player_id = from.player_id;
+    to.handling = from.handling;
 }
 
 const Models& Models::priors() {
@@ -86,12 +95,7 @@ void PartCoder<Coder>::expected_ball(const Expectation& expected, BallState& bal
         coder_.bit(models_.changes_body, !same_body(expected.state, ball))) {
         body(ball);
     } else {
-        ball.radius = expected.state.radius;
-        ball.mass = expected.state.mass;
-        ball.kind = expected.state.kind;
-        ball.behaviour = expected.state.behaviour;
-        ball.player_id = expected.state.player_id;
-        ball.dashed = expected.state.dashed;
+        take_body(expected.state, ball);
     }
     motion(expected, control(expected, ball), ball);
 }
@@ -99,7 +103,12 @@ void PartCoder<Coder>::expected_ball(const Expectation& expected, BallState& bal
 template <typename Coder>
 std::uint32_t PartCoder<Coder>::new_ball(std::uint32_t id_gap, BallState& ball) {
     const std::int32_t gap = code_number(coder_, models_.id_gap, static_cast<std::int32_t>(id_gap));
-    body(ball);
+    if (coder_.raw(same_body(last_new_, ball) ? 1U : 0U, 1) != 0) {
+        take_body(last_new_, ball);
+    } else {
+        body(ball);
+    }
+    last_new_ = ball;
     models_.thrust.code(coder_, ball);
     ball.x = code_number(coder_, models_.x, ball.x);
     ball.y = code_number(coder_, models_.y, ball.y);
@@ -108,7 +117,6 @@ std::uint32_t PartCoder<Coder>::new_ball(std::uint32_t id_gap, BallState& ball) 
     return static_cast<std::uint32_t>(gap);
 }
 
-// Plain bits, so that what a part says of new balls is never much longer than the part.
 template <typename Coder>
 void PartCoder<Coder>::body(BallState& ball) {
     ball.radius = static_cast<std::uint16_t>(coder_.raw(ball.radius, 16));
@@ -117,7 +125,11 @@ void PartCoder<Coder>::body(BallState& ball) {
     ball.kind = static_cast<std::uint8_t>(coder_.raw(ball.kind, 8));
     ball.behaviour = static_cast<std::uint8_t>(coder_.raw(ball.behaviour, 8));
     ball.player_id = static_cast<std::uint16_t>(coder_.raw(ball.player_id, 16));
-    ball.dashed = coder_.raw(ball.dashed ? 1U : 0U, 1) != 0;
+    for (std::uint32_t* trait : {&ball.handling.acceleration, &ball.handling.drag,
+                                 &ball.handling.braking, &ball.handling.dash}) {
+        *trait = static_cast<std::uint32_t>(
+            code_number(coder_, models_.handling, static_cast<std::int32_t>(*trait)));
+    }
 }
 
 template <typename Coder>

@@ -22,6 +22,7 @@ inline constexpr std::uint8_t kPartOfSeveral = 0x10;
 inline constexpr std::uint8_t kKnownFlags = 0x1F;
 
 bool same_body(const BallState& a, const BallState& b);
+void take_body(const BallState& from, BallState& to);
 
 // Which numbers are alike enough to learn from each other.
 enum ExactKind : std::uint8_t { kMoving, kNewControl, kUnpushed, kPushed, kExactKinds };
@@ -38,7 +39,7 @@ struct Models {
     AdaptiveBit joins{0x0800, 8}, leaves{0x0800, 8}, changes_body{0x0800, 8};
     std::array<AdaptiveBit, 2> changes_control{AdaptiveBit{0x0200, 8}, AdaptiveBit{0x3000, 8}};
     ThrustModel thrust;
-    NumberModel id_gap, x, y, vx, vy, mass;
+    NumberModel id_gap, x, y, vx, vy, mass, handling;
 
     static const Models& priors();
 };
@@ -60,7 +61,8 @@ class PartCoder {
     }
     // A ball that was expected. An encoder is told it, a decoder finds it in `ball`.
     void expected_ball(const Expectation& expected, BallState& ball);
-    // A ball that was not; gives back how many ids were passed over since the last one.
+    // A ball that was not; gives back how many ids were passed over since the last one. It takes a
+    // plain bit at least, so that a part never says more than eight balls a byte.
     std::uint32_t new_ball(std::uint32_t id_gap, BallState& ball);
 
   private:
@@ -83,6 +85,7 @@ class PartCoder {
     std::uint8_t flags_;
     Models models_;
     std::vector<Group> groups_;
+    BallState last_new_;
     bool as_expected_ = true;  // every number so far of the ball at hand
 };
 

@@ -3,7 +3,7 @@
 // score (those are messages, messages.h).
 //
 // Position step kPositionStepM, velocity step kVelocityStepMps; `quantise` rounds to nearest and
-// clamps to the range (+-2097 km, +-8388 km/s), which `in_range` lets a caller check first.
+// clamps to the range (+-32.7 km, +-131 km/s), which `in_range` lets a caller check first.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,25 @@ namespace fts::replication {
 
 using Tick = std::uint32_t;
 
-inline constexpr double kPositionStepM = 1.0 / 1024.0;
-inline constexpr double kVelocityStepMps = 1.0 / 256.0;
-inline constexpr double kRadiusStepM = 1.0 / 256.0;
-inline constexpr double kMassStepKg = 1.0 / 256.0;
+// A ball that slows down by k a second stops slowing, on the lattice, at a speed of half a step over
+// k times the time between snapshots: about a millimetre a second here.
+inline constexpr double kPositionStepM = 1.0 / 65536.0;
+inline constexpr double kVelocityStepMps = 1.0 / 16384.0;
+inline constexpr double kRadiusStepM = 1.0 / 4096.0;
+inline constexpr double kMassStepKg = 1.0 / 65536.0;
+inline constexpr double kImpulseStepNs = 1.0 / 256.0;
+inline constexpr double kAccelerationStepMps2 = 1.0 / 4096.0;
+inline constexpr double kDragStepPerS = 1.0 / 16384.0;
+inline constexpr double kDashStepMps = 1.0 / 4096.0;
+
+// How a ball answers to its controls (game::Handling).
+struct HandlingState {
+    std::uint32_t acceleration = 0;  // kAccelerationStepMps2
+    std::uint32_t drag = 0;          // kDragStepPerS
+    std::uint32_t braking = 0;       // kDragStepPerS
+    std::uint32_t dash = 0;          // kDashStepMps
+    friend bool operator==(const HandlingState&, const HandlingState&) = default;
+};
 
 struct BallState {
     std::uint16_t id = 0;  // unique within the arena for the ball's life, not reused within 10 s
@@ -28,12 +43,12 @@ struct BallState {
     std::int32_t vx = 0, vy = 0;             // kVelocityStepMps
     std::int8_t thrust_x = 0, thrust_y = 0;  // the control that acts on it (input.h)
     bool brake = false;
-    bool dashed = false;          // a dash fired since the last snapshot
     std::uint16_t radius = 0;     // kRadiusStepM
     std::uint32_t mass = 0;       // kMassStepKg
     std::uint8_t kind = 0;        // BallKind
     std::uint8_t behaviour = 0;   // game::Behaviour, for an AI ball
     std::uint16_t player_id = 0;  // 0 for an AI ball
+    HandlingState handling = {};
     friend bool operator==(const BallState&, const BallState&) = default;
 };
 enum class BallKind : std::uint8_t { kAi = 0, kPlayer = 1 };
@@ -52,7 +67,7 @@ struct HitState {
     Tick tick = 0;
     std::uint16_t a = 0, b = 0;
     std::int32_t x = 0, y = 0;  // contact point, kPositionStepM
-    std::uint32_t impulse = 0;  // kMassStepKg * m/s
+    std::uint32_t impulse = 0;  // kImpulseStepNs
     friend bool operator==(const HitState&, const HitState&) = default;
 };
 

@@ -21,14 +21,14 @@ constexpr std::size_t kDigestBytes = StateDigest::kBytes;
 constexpr std::size_t kMaxPartHeaderBytes = kMaxVarintBytes + 1 + 1 + 2 + 2 + kDigestBytes;
 // A part is closed when it has less room than this; a ball hardly ever takes more.
 constexpr std::size_t kRoomForBall = 64;
-// A ball whose every adaptive bit is the unlikeliest. The longest is one that joins: six numbers of
+// A ball whose every adaptive bit is the unlikeliest. The longest is one that joins: ten numbers of
 // 34 adaptive bits and 30 plain ones; 49 plain bits of its body; 17 adaptive ones of its control;
-// whether it joins, and whether another does; and what the coder loses by rounding its range, less
-// than a hundredth of a bit for each of at most 300 calls. So one ball always fits a part.
+// whether it joins, and whether another does; and what the coder loses by
+// rounding its range, less than a hundredth of a bit for each of at most 500 calls. So one ball always fits a part.
 constexpr std::size_t kMaxAdaptiveBits = 11;
 static_assert(kLeastChance << kMaxAdaptiveBits >= 0x10000U);
 constexpr std::size_t kMaxBallBits =
-    6 * (34 * kMaxAdaptiveBits + 30) + 49 + (17 + 2) * kMaxAdaptiveBits + 3;
+    10 * (34 * kMaxAdaptiveBits + 30) + 49 + (17 + 2) * kMaxAdaptiveBits + 5;
 static_assert(kMaxPartHeaderBytes + range_coder::kStateBytes +
                   std::max(kRoomForBall, kMaxBallBits / 8 + 1) <=
               kMinResidualPartBytes);

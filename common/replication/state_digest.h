@@ -24,10 +24,14 @@ class StateDigest {
         add(ball.vx);
         add(ball.vy);
         add(byte(ball.thrust_x) | byte(ball.thrust_y) << 8 | std::uint32_t{ball.brake} << 16 |
-            std::uint32_t{ball.dashed} << 17 | std::uint32_t{ball.kind} << 18 |
+            std::uint32_t{ball.kind} << 18 |
             std::uint32_t{ball.behaviour} << 20);
         add(std::uint32_t{ball.radius});
         add(ball.mass);
+        add(ball.handling.acceleration);
+        add(ball.handling.drag);
+        add(ball.handling.braking);
+        add(ball.handling.dash);
     }
     // As little-endian words, the last filled up with zeros; then how many there were.
     void add(std::span<const std::uint8_t> bytes) {

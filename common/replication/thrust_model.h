@@ -33,9 +33,9 @@ struct ThrustModel {
 
     static ThrustModel of_keyboards();
 
-    // The control of `ball`: told to an encoder, set by a decoder.
-    template <typename Coder>
-    void code(Coder& coder, BallState& ball) {
+    // The control of a ball: told to an encoder, set by a decoder.
+    template <typename Coder, typename Steered>
+    void code(Coder& coder, Steered& ball) {
         const std::uint8_t x_byte = x.code(coder, static_cast<std::uint8_t>(ball.thrust_x));
         const std::uint8_t y_byte =
             y[kind_of(x_byte)].code(coder, static_cast<std::uint8_t>(ball.thrust_y));

@@ -87,6 +87,8 @@ void put(const LevelStarted& message, pb::ServerMessage& out) {
     level.set_hint(message.hint);
     std::visit([&](const auto& shape) { put(shape, *level.mutable_platform()); }, message.platform);
     level.set_ai_balls(number(message.ai_balls));
+    level.set_solver(shifted<pb::Solver>(message.solver.kind));
+    level.set_substeps(message.solver.substeps);
 }
 void put(const LevelEnded& message, pb::ServerMessage& out) {
     pb::LevelEnded& level = *out.mutable_level_ended();
@@ -242,7 +244,10 @@ bool take(const pb::LevelStarted& from, LevelStarted& out) {
            take(from.level_count(), kMaxId, out.level_count) &&
            take(from.name(), kMaxTextBytes, out.name) &&
            take(from.hint(), kMaxTextBytes, out.hint) && take(from.platform(), out.platform) &&
-           take(from.ai_balls(), kMaxId, out.ai_balls);
+           take(from.ai_balls(), kMaxId, out.ai_balls) &&
+           take_enum(from.solver(), physics::SolverKind::kEvent, out.solver.kind) &&
+           take(from.substeps(), physics::kMaxSubsteps, out.solver.substeps) &&
+           out.solver.substeps > 0;
 }
 bool take(const pb::LevelEnded& from, LevelEnded& out) {
     return take(from.number(), kMaxId, out.number) &&

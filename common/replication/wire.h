@@ -20,7 +20,8 @@ namespace fts::replication {
 
 // The first byte of an unreliable payload says what it is.
 inline constexpr std::uint8_t kInputPacketTag = 0x01;
-inline constexpr std::uint8_t kSnapshotPacketTag = 0x02;
+inline constexpr std::uint8_t kStatesPacketTag = 0x02;
+inline constexpr std::uint8_t kEventsPacketTag = 0x03;
 // What a SnapshotPacket adds to its part, at most.
 inline constexpr std::size_t kMaxSnapshotPacketOverheadBytes = 7;
 // A tag, two varints, and inputs that all differ.

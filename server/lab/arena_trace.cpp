@@ -108,7 +108,7 @@ void ArenaTrace::steer(TraceSnapshot& snapshot) {
         ball.thrust_x = direction.x;
         ball.thrust_y = direction.y;
         world_.steer(i, ball);
-        snapshot.events.push_back({tick_, ball.id, ball.thrust_x, ball.thrust_y, ball.brake});
+        snapshot.events.push_back({tick_ + 1, ball.id, ball.thrust_x, ball.thrust_y, ball.brake});
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/replication/arena_replay.h"
 #include "common/replication/predictor.h"
 #include "common/replication/snapshot_codec.h"
 
@@ -81,30 +82,36 @@ class ControlEventCoder : public SnapshotCoder {
         if (history.size() == 1) {
             return replication::encode_balls({0, now.tick, {}}, now.balls, kMaxDatagramBytes);
         }
-        std::vector<ControlEvent> events;
+        replication::ArenaEvents events;
+        std::vector<ControlEvent>& controls = events.controls;
         for (const TraceSnapshot& snapshot : history.subspan(1)) {
-            events.insert(events.end(), snapshot.events.begin(), snapshot.events.end());
+            controls.insert(controls.end(), snapshot.events.begin(), snapshot.events.end());
         }
-        std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) {
+        std::stable_sort(controls.begin(), controls.end(), [](const auto& a, const auto& b) {
             return a.ball != b.ball ? a.ball < b.ball : a.tick < b.tick;
         });
-        const TraceSnapshot& baseline = history.front();
-        return {
-            replication::encode_events(baseline.balls, baseline.tick, now.tick, events, now.balls)};
+        return {replication::encode_events(in_play(history.front()), events, in_play(now))};
     }
     std::optional<std::vector<BallState>> decode(
         const TraceSnapshot* baseline, std::span<const Datagram> payloads) const override {
         if (baseline == nullptr) return decode_keyframe(payloads);
-        const auto part =
-            replication::decode_events(baseline->balls, baseline->tick, payloads.front());
+        const replication::Snapshot start = in_play(*baseline);
+        const auto part = replication::decode_events(start, payloads.front());
         if (!part) return std::nullopt;
-        auto balls = replication::replay(course_, baseline->balls, baseline->tick, part->tick,
-                                         snapshot_ticks_, part->events);
-        if (replication::digest_of(balls) != part->outcome_digest) return std::nullopt;
-        return balls;
+        replication::Snapshot outcome =
+            replication::replay(course_, start, part->tick, snapshot_ticks_, part->events);
+        if (replication::outcome_digest_of(outcome) != part->outcome_digest) return std::nullopt;
+        return std::move(outcome.balls);
     }
 
   private:
+    static replication::Snapshot in_play(const TraceSnapshot& shown) {
+        replication::Snapshot snapshot;
+        snapshot.tick = shown.tick;
+        snapshot.phase = game::Phase::kPlaying;
+        snapshot.balls = shown.balls;
+        return snapshot;
+    }
     static std::optional<std::vector<BallState>> decode_keyframe(
         std::span<const Datagram> payloads) {
         std::vector<BallState> balls;

@@ -9,6 +9,8 @@
 namespace fts::server {
 namespace {
 
+using replication::ArenaChange;
+
 // At most `max_bytes`, without cutting a UTF-8 sequence in two.
 std::string cut(const std::string& text, std::size_t max_bytes) {
     if (text.size() <= max_bytes) return text;
@@ -120,12 +122,18 @@ void Match::upgrades_changed(PlayerId id) {
     if (found == impl_->players.end() || found->second.ball == 0) return;
     Impl::Ball& ball = impl_->balls.at(found->second.ball);
     ball.stats = game::stats_for(impl_->ledger.tiers(found->second.key));
-    impl_->world->set_mass(ball.body, ball.stats.mass_kg);
+    impl_->settle_on_lattice(ball.stats);
+    const std::uint16_t ball_id = found->second.ball;
+    const replication::BallState state =
+        impl_->state_of(ball_id, ball, impl_->body(ball_id).position_m);
+    impl_->arena->put(state);
+    impl_->log.add(ArenaChange::ball_put(impl_->event_tick(), state));
 }
 
 TickFacts Match::tick() {
     Impl& match = *impl_;
     if (match.phase == game::Phase::kWaiting) return {};
+    match.in_tick = true;
     ++match.now;
     ++match.totals.ticks;
     TickFacts facts;
@@ -146,12 +154,23 @@ TickFacts Match::tick() {
             break;
     }
     match.send_due();
+    if (match.arena && snapshot_is_due()) match.snap();
+    match.in_tick = false;
     return facts;
+}
+
+bool Match::snapshot_is_due() const {
+    return (impl_->now + static_cast<replication::Tick>(impl_->config.arena)) %
+               impl_->config.snapshot_ticks ==
+           0;
 }
 
 void Match::clear_hits() {
     impl_->hits.clear();
-    for (auto& [id, ball] : impl_->balls) ball.dashed = false;
+}
+
+const EventLog& Match::events() const {
+    return impl_->log;
 }
 
 std::vector<Outgoing> Match::drain_outgoing() {

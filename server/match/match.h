@@ -18,6 +18,7 @@
 #include "common/replication/messages.h"
 #include "common/replication/snapshot.h"
 #include "server/economy/ledger.h"
+#include "server/match/event_log.h"
 
 namespace fts::server {
 
@@ -29,6 +30,7 @@ struct MatchConfig {
     std::vector<game::Level> levels;  // at least one, numbered 1, 2, 3, ...
     int max_players = game::kDefaultPlayersPerArena;
     std::vector<physics::SolverChoice> solvers;  // one a level, or none: swept
+    replication::Tick snapshot_ticks = game::kTickRateHz / game::kSnapshotRateHz;
 };
 
 // A message for one player, or for all in the arena when `to` is empty.
@@ -91,7 +93,11 @@ class Match {
     // One sixtieth of a second; nothing happens while nobody is here.
     TickFacts tick();
 
+    // Whether the state was put on the lattice at the end of this tick: its snapshot is one from
+    // which, with `events`, everything that follows can be replayed.
+    bool snapshot_is_due() const;
     replication::Snapshot snapshot() const;  // hits: all since the last call of `clear_hits`
+    const EventLog& events() const;
     void clear_hits();
     std::vector<Outgoing> drain_outgoing();
 

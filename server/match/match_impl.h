@@ -9,10 +9,12 @@
 
 #include "common/game/movement.h"
 #include "common/game/rules.h"
+#include "common/replication/hit_log.h"
+#include "common/replication/lattice_world.h"
 #include "server/ai/perception.h"
 #include "server/ai/pilot.h"
 #include "server/match/attribution.h"
-#include "server/match/hit_log.h"
+#include "server/match/event_log.h"
 #include "server/match/id_pool.h"
 #include "server/match/match.h"
 #include "server/match/random.h"
@@ -20,7 +22,6 @@
 namespace fts::server {
 
 using replication::Tick;
-using World = physics::World<double>;
 
 constexpr Tick ticks_of(double duration_s) {
     return static_cast<Tick>(duration_s * game::kTickRateHz + 0.5);
@@ -40,12 +41,11 @@ inline constexpr Tick kRosterIntervalTicks = game::kTickRateHz / 5;
 
 struct Match::Impl {
     struct Ball {
-        physics::BodyId body;
         PlayerId player = 0;  // 0: an AI ball
         game::BallStats stats;
         game::InputCommand input;
+        game::InputCommand held;  // what acts on it
         game::DashState dash;
-        bool dashed = false;  // since the last snapshot
         game::Behaviour behaviour = game::Behaviour::kChaser;
         std::optional<ai::Pilot> pilot;  // of an AI ball
     };
@@ -74,6 +74,16 @@ struct Match::Impl {
 
     Impl(const MatchConfig& match_config, Ledger& match_ledger);
 
+    // The tick whose snapshot is the first to show what happens now.
+    Tick event_tick() const { return in_tick ? now : now + 1; }
+    physics::BodyView<double> body(std::uint16_t ball) const { return arena->body(ball); }
+    replication::BallState state_of(std::uint16_t id, const Ball& ball,
+                                    const physics::Vec2d& position_m) const;
+    replication::CoinState state_of(std::uint16_t id, const Coin& coin) const;
+    physics::SolverChoice solver() const {
+        return config.solvers.empty() ? physics::SolverChoice() : config.solvers[level_index];
+    }
+
     const game::Level& level() const { return config.levels[level_index]; }
     Actor actor_of(std::uint16_t ball) const;
     ScoreLine& score(PlayerId id) { return scores.at(players.at(id).key); }
@@ -94,6 +104,9 @@ struct Match::Impl {
     bool spawn_player(PlayerId id, Player& player);
     std::optional<std::uint16_t> place_ball(Ball ball);
     void remove_ball(std::uint16_t id);
+    void forget_coin(std::uint16_t id);
+    // What travels is rounded; a ball is what travels.
+    static void settle_on_lattice(game::BallStats& stats);
     bool put_coin(const physics::Vec2d& position_m);
     void drop_coins(PlayerId id, const physics::Vec2d& fallen_at_m);
     void clear_field();
@@ -103,6 +116,7 @@ struct Match::Impl {
     void think();
     void apply_controls();
     TickFacts step_world();
+    void snap();
     void record_contacts();
     void settle_falls();
     void settle_fall(std::uint16_t ball_id, const physics::Vec2d& fallen_at_m,
@@ -133,16 +147,18 @@ struct Match::Impl {
     std::size_t level_index = 0;
     bool cleared = false;  // the level whose shop is open
 
-    std::optional<World> world;  // of the present level; empty while the arena is paused
+    bool in_tick = false;
+    // Of the present level; empty while the arena is paused.
+    std::optional<replication::LatticeWorld> arena;
+    EventLog log;  // of what is done to it from outside, and to phase and coins
     std::map<std::uint16_t, Ball> balls;
-    std::vector<std::uint16_t> ball_of_slot;  // by BodyId::index, of the latest body there
     std::vector<Waiting> waiting_ai;
     Tick ai_tried_in = 0;      // the tick in which ...
     std::size_t ai_tried = 0;  // ... so many were given a try
     std::map<std::uint16_t, Coin> coins;
     Attribution attribution;
     ai::Memory memory;
-    HitLog hits;
+    replication::HitLog hits;
 
     PlayerId last_player = 0;
     std::map<PlayerId, Player> players;
@@ -155,7 +171,7 @@ struct Match::Impl {
     std::vector<Outgoing> outgoing;
 
     MatchTotals totals;
-    physics::CollisionAudit audit_before;  // of the worlds of past levels
+    physics::CollisionAudit audit_before;  // of the worlds before the last snap
     physics::CollisionAudit audit;
 };
 

@@ -1,14 +1,11 @@
 // What a match says: messages, the briefing and the snapshot.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "server/match/match_impl.h"
 
 namespace fts::server {
 namespace {
-
-using replication::quantise;
 
 bool same(const replication::PlayerInfo& a, const replication::PlayerInfo& b) {
     return a.player_id == b.player_id && a.name == b.name && a.colour == b.colour &&
@@ -22,12 +19,6 @@ bool same(const replication::Wallet& a, const replication::Wallet& b) {
 
 int shown(std::int64_t coins) {
     return static_cast<int>(std::min<std::int64_t>(coins, std::numeric_limits<int>::max()));
-}
-
-template <typename Unsigned>
-Unsigned steps(double value, double step) {
-    constexpr double kMost = static_cast<double>(std::numeric_limits<Unsigned>::max());
-    return static_cast<Unsigned>(std::clamp(std::round(value / step), 0.0, kMost));
 }
 
 }  // namespace
@@ -111,7 +102,8 @@ replication::LevelStarted Match::Impl::level_started() const {
             .name = level().name,
             .hint = level().hint,
             .platform = level().platform,
-            .ai_balls = ai_balls};
+            .ai_balls = ai_balls,
+            .solver = solver()};
 }
 
 replication::Roster Match::Impl::roster() const {
@@ -149,32 +141,8 @@ replication::Snapshot Match::snapshot() const {
     result.phase = match.phase;
     result.level = static_cast<std::uint16_t>(match.level().number);
     result.phase_end_tick = match.phase_end;
-    const bool moving = match.phase == game::Phase::kPlaying;
-    for (const auto& [id, ball] : match.balls) {
-        const auto body = match.world->body(ball.body);
-        const game::InputCommand input = moving ? ball.input : game::InputCommand{};
-        result.balls.push_back(
-            {.id = id,
-             .x = quantise(body.position_m.x(), replication::kPositionStepM),
-             .y = quantise(body.position_m.y(), replication::kPositionStepM),
-             .vx = quantise(body.velocity_mps.x(), replication::kVelocityStepMps),
-             .vy = quantise(body.velocity_mps.y(), replication::kVelocityStepMps),
-             .thrust_x = input.thrust_x,
-             .thrust_y = input.thrust_y,
-             .brake = input.brake,
-             .dashed = ball.dashed,
-             .radius = steps<std::uint16_t>(body.radius_m, replication::kRadiusStepM),
-             .mass = steps<std::uint32_t>(body.mass_kg, replication::kMassStepKg),
-             .kind = static_cast<std::uint8_t>(ball.player != 0 ? replication::BallKind::kPlayer
-                                                                : replication::BallKind::kAi),
-             .behaviour = static_cast<std::uint8_t>(ball.player != 0 ? game::Behaviour::kChaser
-                                                                     : ball.behaviour),
-             .player_id = ball.player});
-    }
-    for (const auto& [id, coin] : match.coins)
-        result.coins.push_back({id, quantise(coin.position_m.x(), replication::kPositionStepM),
-                                quantise(coin.position_m.y(), replication::kPositionStepM),
-                                static_cast<std::uint16_t>(coin.value_coins)});
+    if (match.arena) result.balls = match.arena->balls();
+    for (const auto& [id, coin] : match.coins) result.coins.push_back(match.state_of(id, coin));
     result.hits = match.hits.sorted();
     return result;
 }

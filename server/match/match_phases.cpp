@@ -11,6 +11,7 @@ using replication::LevelOutcome;
 void Match::Impl::begin_phase(Phase next, double duration_s) {
     phase = next;
     phase_end = now + ticks_of(duration_s);
+    log.add(replication::ArenaChange::phase_begun(event_tick(), phase, phase_end));
 }
 
 void Match::Impl::begin_level() {
@@ -28,10 +29,8 @@ void Match::Impl::begin_level() {
     attribution.clear();
     memory.clear();
     audit_before = audit;
-    physics::Scene scene;
-    scene.platform = level().platform;
-    world.emplace(scene,
-                  config.solvers.empty() ? physics::SolverChoice() : config.solvers[level_index]);
+    arena.emplace(replication::course_of(level().platform, solver()),
+                  std::span<const replication::BallState>());
 
     waiting_ai.clear();
     for (std::size_t group = 0; group < level().ai.size(); ++group)
@@ -45,6 +44,7 @@ void Match::Impl::begin_level() {
     begin_phase(Phase::kCountdown, game::kCountdownS);
     if (!players.empty()) tell_all(level_started());
     spawn_due();
+    log.begin(event_tick());
 }
 
 void Match::Impl::end_level(LevelOutcome outcome) {
@@ -58,7 +58,8 @@ void Match::Impl::end_level(LevelOutcome outcome) {
         tell(id, replication::LevelEnded{level().number, outcome, player.coins_this_level});
     }
     clear_field();
-    for (const auto& [id, ball] : balls) world->set_velocity(ball.body, physics::Vec2d::Zero());
+    arena->halt();
+    for (auto& [id, ball] : balls) ball.held = {};
     begin_phase(Phase::kShop, game::kShopS);
 }
 
@@ -77,7 +78,8 @@ void Match::Impl::pause() {
     hits.clear();
     lives_of_leavers.clear();
     outgoing.clear();
-    world.reset();
+    arena.reset();
+    log.begin(event_tick());
     phase = Phase::kWaiting;
     phase_end = 0;
 }

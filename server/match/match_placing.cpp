@@ -9,6 +9,9 @@
 namespace fts::server {
 
 using physics::Vec2d;
+using replication::BallState;
+using replication::quantise;
+using replication::ArenaChange;
 
 Actor Match::Impl::actor_of(std::uint16_t ball) const {
     const PlayerId player = balls.at(ball).player;
@@ -71,8 +74,8 @@ std::optional<std::uint16_t> Match::Impl::place_ball(Ball ball) {
     std::vector<Disc> taken;
     taken.reserve(balls.size());
     for (const auto& [id, other] : balls) {
-        const auto body = world->body(other.body);
-        taken.push_back({body.position_m, body.radius_m});
+        const auto there = body(id);
+        taken.push_back({there.position_m, there.radius_m});
     }
     const auto clearance_m = [&taken](const Vec2d& point) {
         double nearest_m = std::numeric_limits<double>::infinity();
@@ -81,29 +84,54 @@ std::optional<std::uint16_t> Match::Impl::place_ball(Ball ball) {
         }
         return nearest_m;
     };
+    settle_on_lattice(ball.stats);
     const auto spot = find_spawn(level().platform, ball.stats.radius_m, clearance_m, random);
     if (!spot) return std::nullopt;
     const auto id = ball_ids.take(now);
     if (!id) return std::nullopt;
-    const auto body = world->add({.position_m = *spot,
-                                  .velocity_mps = Vec2d::Zero(),
-                                  .radius_m = ball.stats.radius_m,
-                                  .mass_kg = ball.stats.mass_kg});
-    if (!body) {
+    const BallState state = state_of(*id, ball, *spot);
+    if (!arena->put(state)) {
         ball_ids.give_back(*id, now);
         return std::nullopt;
     }
-    ball.body = *body;
-    if (ball_of_slot.size() <= body->index) ball_of_slot.resize(body->index + 1);
-    ball_of_slot[body->index] = *id;
+    log.add(ArenaChange::ball_put(event_tick(), state));
     balls.emplace(*id, std::move(ball));
     return id;
+}
+
+void Match::Impl::settle_on_lattice(game::BallStats& stats) {
+    const auto rounded = [](double value, double step) {
+        return replication::dequantise(quantise(value, step), step);
+    };
+    stats.radius_m = rounded(stats.radius_m, replication::kRadiusStepM);
+    stats.mass_kg = rounded(stats.mass_kg, replication::kMassStepKg);
+}
+
+// At rest, with nobody steering.
+BallState Match::Impl::state_of(std::uint16_t id, const Ball& ball, const Vec2d& position_m) const {
+    const bool is_player = ball.player != 0;
+    return {.id = id,
+            .x = quantise(position_m.x(), replication::kPositionStepM),
+            .y = quantise(position_m.y(), replication::kPositionStepM),
+            .radius = static_cast<std::uint16_t>(
+                quantise(ball.stats.radius_m, replication::kRadiusStepM)),
+            .mass =
+                static_cast<std::uint32_t>(quantise(ball.stats.mass_kg, replication::kMassStepKg)),
+            .kind = static_cast<std::uint8_t>(is_player ? replication::BallKind::kPlayer
+                                                        : replication::BallKind::kAi),
+            .behaviour =
+                static_cast<std::uint8_t>(is_player ? game::Behaviour::kChaser : ball.behaviour),
+            .player_id = ball.player,
+            .handling = replication::quantised(game::handling_of(ball.stats))};
 }
 
 void Match::Impl::remove_ball(std::uint16_t id) {
     const auto found = balls.find(id);
     assert(found != balls.end());
-    if (world->contains(found->second.body)) world->remove(found->second.body);
+    if (arena->slot_of(id)) {
+        arena->remove(id);
+        log.add(ArenaChange::ball_gone(event_tick(), id));
+    }
     balls.erase(found);
     ball_ids.give_back(id, now);
 }
@@ -112,8 +140,21 @@ bool Match::Impl::put_coin(const Vec2d& position_m) {
     if (coins.size() == kMaxFieldCoins) return false;
     const auto id = coin_ids.take(now);
     if (!id) return false;
-    coins.emplace(*id, Coin{position_m});
+    const Coin coin{position_m};
+    coins.emplace(*id, coin);
+    log.add(ArenaChange::coin_put(event_tick(), state_of(*id, coin)));
     return true;
+}
+
+replication::CoinState Match::Impl::state_of(std::uint16_t id, const Coin& coin) const {
+    return {id, quantise(coin.position_m.x(), replication::kPositionStepM),
+            quantise(coin.position_m.y(), replication::kPositionStepM),
+            static_cast<std::uint16_t>(coin.value_coins)};
+}
+
+void Match::Impl::forget_coin(std::uint16_t id) {
+    coin_ids.give_back(id, now);
+    log.add(ArenaChange::coin_gone(event_tick(), id));
 }
 
 void Match::Impl::drop_coins(PlayerId id, const Vec2d& fallen_at_m) {
@@ -135,7 +176,7 @@ void Match::Impl::drop_coins(PlayerId id, const Vec2d& fallen_at_m) {
 }
 
 void Match::Impl::clear_field() {
-    for (const auto& [id, coin] : coins) coin_ids.give_back(id, now);
+    for (const auto& [id, coin] : coins) forget_coin(id);
     coins.clear();
     ledger.sweep_field(config.arena);
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/replication/snapshot_codec.h"
 #include "server/match/match_impl.h"
 #include "server/match/spawn.h"
 
@@ -33,19 +34,27 @@ void Match::Impl::think() {
 
 void Match::Impl::apply_controls() {
     for (auto& [id, ball] : balls) {
-        world->set_control(ball.body, game::control_for(ball.stats, ball.input));
-        const auto dash = game::advance_dash(ball.dash, ball.stats, ball.input, game::kTickRateHz);
-        if (!dash) continue;
-        world->set_velocity(ball.body, world->body(ball.body).velocity_mps + *dash);
-        ball.dashed = true;
+        const game::InputCommand& wanted = ball.input;
+        const bool dashes =
+            game::advance_dash(ball.dash, ball.stats, wanted, game::kTickRateHz);
+        const game::InputCommand steering{wanted.thrust_x, wanted.thrust_y, wanted.brake};
+        if (steering == ball.held && !dashes) continue;
+        ball.held = steering;
+        const std::size_t slot = arena->slot_of(id).value();
+        arena->steer(slot, {.thrust_x = wanted.thrust_x,
+                            .thrust_y = wanted.thrust_y,
+                            .brake = wanted.brake});
+        if (dashes) arena->dash(slot);
+        log.add(replication::ControlEvent{now, id, wanted.thrust_x, wanted.thrust_y, wanted.brake,
+                                          dashes});
     }
 }
 
 TickFacts Match::Impl::step_world() {
-    const physics::StepReport report = world->step(game::kTickDurationS);
+    const physics::StepReport report = arena->advance(game::kTickDurationS);
     if (report.overrun) ++totals.overruns;
 
-    const physics::CollisionAudit& here = world->audit();
+    const physics::CollisionAudit& here = arena->world().audit();
     audit = audit_before;
     audit.ball_collisions += here.ball_collisions;
     audit.wall_collisions += here.wall_collisions;
@@ -56,11 +65,17 @@ TickFacts Match::Impl::step_world() {
     return {report.overrun, report.unspent_time_s};
 }
 
+void Match::Impl::snap() {
+    arena->snap();
+    audit_before = audit;
+    log.forget_before(now - std::min(now, replication::kMaxPredictedTicks));
+}
+
 void Match::Impl::record_contacts() {
-    for (const auto& contact : world->contacts()) {
+    for (const auto& contact : arena->contacts()) {
         if (!contact.b) continue;
-        const std::uint16_t a = ball_of_slot[contact.a.index];
-        const std::uint16_t b = ball_of_slot[contact.b->index];
+        const std::uint16_t a = arena->id_at(contact.a.index);
+        const std::uint16_t b = arena->id_at(contact.b->index);
         const Vec2d& velocity_a = contact.velocity_a_before_mps;
         const Vec2d& velocity_b = contact.velocity_b_before_mps;
         const auto full_momentum_ns = [this](std::uint16_t id) {
@@ -72,13 +87,7 @@ void Match::Impl::record_contacts() {
         attribution.record({actor_of(b), actor_of(a), now, contact.impulse_ns, full_momentum_ns(b),
                             came_at(velocity_a, velocity_b, -contact.normal)});
 
-        const double impulse_steps = std::round(contact.impulse_ns / replication::kMassStepKg);
-        hits.add({.tick = now,
-                  .a = std::min(a, b),
-                  .b = std::max(a, b),
-                  .x = replication::quantise(contact.point_m.x(), replication::kPositionStepM),
-                  .y = replication::quantise(contact.point_m.y(), replication::kPositionStepM),
-                  .impulse = static_cast<std::uint32_t>(std::min(impulse_steps, 4294967295.0))});
+        hits.add(replication::hit_of(contact, now, a, b));
         report_hit(a, b, contact, true);
         report_hit(b, a, contact, false);
     }
@@ -91,8 +100,8 @@ void Match::Impl::settle_falls() {
         std::vector<Attribution::Share> shares;
     };
     std::vector<Settled> settled;
-    for (const auto& fall : world->falls()) {
-        const std::uint16_t id = ball_of_slot[fall.id.index];
+    for (const auto& fall : arena->falls()) {
+        const std::uint16_t id = arena->id_at(fall.id.index);
         settled.push_back({id, fall.position_m, attribution.credit(actor_of(id), now)});
     }
     for (const Settled& fall : settled) settle_fall(fall.ball, fall.fallen_at_m, fall.shares);
@@ -135,7 +144,7 @@ void Match::Impl::collect_coins() {
             if (player.ball == 0) continue;
             const Ball& ball = balls.at(player.ball);
             const double distance_m =
-                (world->body(ball.body).position_m - coin.position_m).norm() - ball.stats.radius_m;
+                (body(player.ball).position_m - coin.position_m).norm() - ball.stats.radius_m;
             if (distance_m > ball.stats.magnet_range_m) continue;
             if (taker != 0 && distance_m >= nearest_m) continue;
             taker = id;
@@ -144,7 +153,7 @@ void Match::Impl::collect_coins() {
         if (taker == 0) return false;
         ledger.pick_up(config.arena, players.at(taker).key, coin.value_coins);
         earn(taker, coin.value_coins);
-        coin_ids.give_back(entry.first, now);
+        forget_coin(entry.first);
         return true;
     });
 }
@@ -154,15 +163,15 @@ void Match::Impl::remember() {
     ai::Frame frame;
     frame.reserve(balls.size());
     for (const auto& [id, ball] : balls) {
-        const auto body = world->body(ball.body);
+        const auto seen = body(id);
         frame.push_back({.id = id,
                          .is_player = ball.player != 0,
                          .behaviour = ball.behaviour,
-                         .position_m = body.position_m,
-                         .velocity_mps = body.velocity_mps,
-                         .radius_m = body.radius_m,
-                         .mass_kg = body.mass_kg});
-        const double room_m = physics::distance_to_edge_m(level().platform, body.position_m);
+                         .position_m = seen.position_m,
+                         .velocity_mps = seen.velocity_mps,
+                         .radius_m = seen.radius_m,
+                         .mass_kg = seen.mass_kg});
+        const double room_m = physics::distance_to_edge_m(level().platform, seen.position_m);
         attribution.observe(actor_of(id), now, room_m >= well_inside_m);
     }
     memory.remember(std::move(frame));

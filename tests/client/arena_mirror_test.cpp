@@ -58,7 +58,7 @@ TEST(ArenaMirror, shows_each_hit_once_when_its_moment_is_drawn) {
     ArenaMirror mirror;
     mirror.add(snapshot(60));
     auto with_hits = snapshot(62);
-    with_hits->hits = {{61, 1, 2, 1024, 0, 512}, {62, 3, 4, 0, 2048, 256}};
+    with_hits->hits = {{61, 1, 2, 65536, 0, 512}, {62, 3, 4, 0, 131072, 256}};
     mirror.add(with_hits);
     EXPECT_TRUE(mirror.view_at(60.5 / 60.0).hits.empty());
     const View first = mirror.view_at(61.5 / 60.0);

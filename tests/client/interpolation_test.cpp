@@ -47,8 +47,8 @@ TEST(Interpolation, is_exact_for_a_ball_in_straight_flight) {
         BallState second = first;
         second.x += 4 * vx;
         second.y += 4 * vy;
-        const Vec2d start_m(first.x / 1024.0, first.y / 1024.0);
-        const Vec2d velocity_mps(first.vx / 256.0, first.vy / 256.0);
+        const Vec2d start_m(first.x / 65536.0, first.y / 65536.0);
+        const Vec2d velocity_mps(first.vx / 16384.0, first.vy / 16384.0);
         for (const double ticks : {0.0, 0.1, 2.0, 3.7, 4.0, 5.0}) {
             const auto poses =
                 interpolate(at(100, {first}), at(104, {second}), 100 + ticks, kRateHz);

@@ -61,10 +61,13 @@ void PilotedWorld::tick(Pilot& pilot, Rng& rng) {
     if (seen_.size() > lag_ticks_ + 1) seen_.pop_front();
     if (pilot_is_on()) {
         const game::InputCommand command = pilot.decide(seen_.front(), rng);
-        world_.set_control(ids_.front(), game::control_for(stats_, command));
-        const auto dash_mps = game::advance_dash(dash_, stats_, command, game::kTickRateHz);
+        const game::Handling handling = game::handling_of(stats_);
+        world_.set_control(ids_.front(), game::control_for(handling, command));
         const auto own = world_.body(ids_.front());
-        if (dash_mps) world_.set_velocity(ids_.front(), own.velocity_mps + *dash_mps);
+        if (game::advance_dash(dash_, stats_, command, game::kTickRateHz)) {
+            world_.set_velocity(ids_.front(),
+                                own.velocity_mps + game::dash_for(handling, command));
+        }
         std::erase_if(coins_, [&](const client::CoinView& coin) {
             return (coin.position_m - own.position_m).norm() <
                    own.radius_m + game::kCoinRadiusM + stats_.magnet_range_m;

@@ -32,7 +32,6 @@ Snapshot rich_baseline() {
         ball.vy = -40 * i;
         ball.thrust_x = static_cast<std::int8_t>(i - 20);
         ball.brake = i % 2 == 0;
-        ball.dashed = i % 5 == 0;
         ball.radius = 128;
         ball.mass = i % 3 == 0 ? 100'000 : 256;
         ball.kind = static_cast<std::uint8_t>(i % 2);

@@ -12,15 +12,15 @@ const InputCommand kFullRight{.thrust_x = 127};
 TEST(Movement, FullThrustTendsToTheTopSpeedWhateverTheMass) {
     for (std::uint8_t tier = 0; tier <= kMaxTier; ++tier) {
         const BallStats stats = stats_for({tier, 0, 0, 0, 0, 0});
-        const auto control = control_for(stats, kFullRight);
+        const auto control = control_for(handling_of(stats), kFullRight);
         EXPECT_NEAR(control.acceleration_mps2.norm() / control.drag_per_s, stats.top_speed_mps,
                     1e-12);
     }
 }
 
 TEST(Movement, AHeavierBallCoastsFurther) {
-    const auto light = control_for(stats_for({0, 0, 0, 0, 0, 0}), {});
-    const auto heavy = control_for(stats_for({6, 0, 0, 0, 0, 0}), {});
+    const auto light = control_for(handling_of(stats_for({0, 0, 0, 0, 0, 0})), {});
+    const auto heavy = control_for(handling_of(stats_for({6, 0, 0, 0, 0, 0})), {});
     EXPECT_LT(heavy.drag_per_s, light.drag_per_s);
     EXPECT_TRUE(light.acceleration_mps2.isZero());
 }
@@ -29,9 +29,9 @@ TEST(Movement, BrakingAddsItsDragAndBuysMore) {
     const BallStats base = stats_for({});
     const BallStats better = stats_for({0, 0, 0, 6, 0, 0});
     const InputCommand brake{.brake = true};
-    EXPECT_DOUBLE_EQ(control_for(base, brake).drag_per_s,
-                     control_for(base, {}).drag_per_s + base.braking_per_s);
-    EXPECT_GT(control_for(better, brake).drag_per_s, control_for(base, brake).drag_per_s);
+    EXPECT_DOUBLE_EQ(control_for(handling_of(base), brake).drag_per_s,
+                     control_for(handling_of(base), {}).drag_per_s + base.braking_per_s);
+    EXPECT_GT(control_for(handling_of(better), brake).drag_per_s, control_for(handling_of(base), brake).drag_per_s);
 }
 
 TEST(Movement, ADashFiresOnceAndAgainOnlyWhenRecharged) {
@@ -40,15 +40,22 @@ TEST(Movement, ADashFiresOnceAndAgainOnlyWhenRecharged) {
     DashState state;
     int ticks_between = 0;
     ASSERT_TRUE(advance_dash(state, stats, dash, kTickRateHz));
-    std::optional<physics::Vec2d> second;
-    while (!second && ticks_between < 10'000) {
-        second = advance_dash(state, stats, dash, kTickRateHz);
+    bool again = false;
+    while (!again && ticks_between < 10'000) {
+        again = advance_dash(state, stats, dash, kTickRateHz);
         ++ticks_between;
     }
-    ASSERT_TRUE(second);
+    ASSERT_TRUE(again);
     EXPECT_EQ(ticks_between, static_cast<int>(stats.dash_recharge_s * kTickRateHz));
-    EXPECT_NEAR(second->norm(), stats.dash_speed_mps, 1e-12);
-    EXPECT_EQ(second->x(), 0.0);
+}
+
+TEST(Movement, ADashGoesAlongTheThrustHoweverWeakThatIs) {
+    const Handling handling = handling_of(stats_for({}));
+    const physics::Vec2d gained_mps = dash_for(handling, {.thrust_x = 0, .thrust_y = 90});
+    EXPECT_NEAR(gained_mps.norm(), handling.dash_mps, 1e-12);
+    EXPECT_EQ(gained_mps.x(), 0.0);
+    EXPECT_EQ(dash_for(handling, {.thrust_y = 1}), gained_mps);
+    EXPECT_TRUE(dash_for(handling, {}).isZero());
 }
 
 TEST(Movement, ADashWithoutADirectionWaitsForOne) {

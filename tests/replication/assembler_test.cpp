@@ -13,7 +13,7 @@ using testing::wild_snapshot;
 using testing::wild_successor;
 using Parts = std::vector<std::vector<std::uint8_t>>;
 
-constexpr std::size_t kPartBytes = 90;
+constexpr std::size_t kPartBytes = 120;
 
 // A baseline at tick 100, and what came after it, in several parts each.
 struct Stream {

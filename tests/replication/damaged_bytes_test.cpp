@@ -78,7 +78,6 @@ TEST(DamagedPart, WithARandomBodyIsSoundOrNothing) {
         SnapshotPair pair = wild_pair(rng, 10);
         for (BallState& ball : pair.before.balls) {
             ball.vx = ball.vy = 0;
-            ball.dashed = false;
         }
         pair.now = pair.before;
         pair.now.hits.clear();

@@ -70,13 +70,16 @@ TEST(Messages, LevelStartedOnEveryPlatform) {
                        .name = "Ring",
                        .hint = "Mind the hole.",
                        .platform = physics::Ring{1.25, 12.5},
-                       .ai_balls = 8};
+                       .ai_balls = 8,
+                       .solver = {physics::SolverKind::kDiscrete, 4}};
     LevelStarted back = through_the_wire(level);
     EXPECT_EQ(back.number, 3);
     EXPECT_EQ(back.level_count, 9);
     EXPECT_EQ(back.name, "Ring");
     EXPECT_EQ(back.hint, "Mind the hole.");
     EXPECT_EQ(back.ai_balls, 8);
+    EXPECT_EQ(back.solver.kind, physics::SolverKind::kDiscrete);
+    EXPECT_EQ(back.solver.substeps, 4U);
     EXPECT_EQ(std::get<physics::Ring>(back.platform).inner_radius_m, 1.25);
     EXPECT_EQ(std::get<physics::Ring>(back.platform).outer_radius_m, 12.5);
 

@@ -128,7 +128,8 @@ TEST(SnapshotPacket, CarriesAPartAndAddsNoMoreThanItsOverhead) {
 TEST(SnapshotPacket, WithoutTheHeaderOfAPartIsNothing) {
     EXPECT_FALSE(
         decode_snapshot_packet(encode(SnapshotPacket{.acked_input_sequence = 1, .part = {}})));
-    EXPECT_FALSE(decode_snapshot_packet(Bytes{kSnapshotPacketTag}));
+    EXPECT_FALSE(decode_snapshot_packet(Bytes{kStatesPacketTag}));
+    EXPECT_FALSE(decode_snapshot_packet(Bytes{kEventsPacketTag, 0, 5, 0}));
     EXPECT_FALSE(decode_snapshot_packet(Bytes{}));
 }
 

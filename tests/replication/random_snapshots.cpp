@@ -39,7 +39,6 @@ void change_some(Rng& rng, BallState& ball) {
     if (chance(rng, 30)) ball.thrust_x = static_cast<std::int8_t>(pick(rng, -128, 127));
     if (chance(rng, 30)) ball.thrust_y = static_cast<std::int8_t>(pick(rng, -128, 127));
     if (chance(rng, 20)) ball.brake = !ball.brake;
-    if (chance(rng, 20)) ball.dashed = !ball.dashed;
     if (chance(rng, 10)) ball.radius = any_unsigned<std::uint16_t>(rng);
     if (chance(rng, 10)) ball.mass = any_unsigned<std::uint32_t>(rng);
     if (chance(rng, 10)) ball.kind = static_cast<std::uint8_t>(pick(rng, 0, 1));
@@ -47,6 +46,10 @@ void change_some(Rng& rng, BallState& ball) {
         ball.behaviour = static_cast<std::uint8_t>(pick(rng, 0, static_cast<int>(kLastBehaviour)));
     }
     if (chance(rng, 10)) ball.player_id = any_unsigned<std::uint16_t>(rng);
+    if (chance(rng, 10)) {
+        ball.handling = {any_unsigned<std::uint32_t>(rng), any_unsigned<std::uint32_t>(rng),
+                         any_unsigned<std::uint32_t>(rng), any_unsigned<std::uint32_t>(rng)};
+    }
 }
 
 void change_some(Rng& rng, CoinState& coin) {

@@ -50,7 +50,7 @@ Snapshot tick_106() {
     return snapshot;
 }
 
-const Bytes kDelta = {0x6a, 0x06, 0x02, 0x1e, 0x26,                           // header
+const Bytes kDelta = {0x6a, 0x06, 0x02, 0x09, 0x17,                           // header
                       0xe7,                                                   // ball 1
                       0x05, 0x02, 0x02, 0x00, 0x7f, 0x00,                     // ball 2
                       0xc0,                                                   // ball 5
@@ -111,7 +111,7 @@ std::vector<BallState> three_balls_at_100() {
 }
 
 TEST(WorkedExample, OfAResidualPart) {
-    const Bytes bytes{0x64, 0x03, 0x00, 0xc8, 0x33, 0x24, 0x31, 0x9d, 0x64, 0x91};
+    const Bytes bytes{0x64, 0x03, 0x00, 0x04, 0x26, 0xe8, 0x79, 0x9d, 0x64, 0x91};
     const auto parts = encode_balls(three_balls(), three_balls_at_100(), 1200);
     ASSERT_EQ(parts.size(), 1U);
     EXPECT_EQ(parts.front(), bytes);
@@ -119,15 +119,20 @@ TEST(WorkedExample, OfAResidualPart) {
 }
 
 TEST(WorkedExample, OfAControlPart) {
-    const Bytes bytes{0x64, 0x03, 0x42, 0xd7, 0xed, 0xb7, 0x21};
-    std::vector<BallState> baseline = three_balls_at_100();
-    baseline[1].kind = static_cast<std::uint8_t>(BallKind::kPlayer);
-    const std::vector<ControlEvent> events{{98, 2, 127, 0, false}};
-    EXPECT_EQ(encode_events(baseline, 97, 100, events, three_balls_at_100()), bytes);
-    const auto part = decode_events(baseline, 97, bytes);
+    const Bytes bytes{0x64, 0x03, 0xb8, 0x92, 0x2f, 0x43, 0x10};
+    Snapshot baseline;
+    baseline.tick = 97;
+    baseline.balls = three_balls_at_100();
+    baseline.balls[1].kind = static_cast<std::uint8_t>(BallKind::kPlayer);
+    Snapshot outcome;
+    outcome.tick = 100;
+    outcome.balls = three_balls_at_100();
+    const ArenaEvents events{{{98, 2, 127, 0, false}}, {}};
+    EXPECT_EQ(encode_events(baseline, events, outcome), bytes);
+    const auto part = decode_events(baseline, bytes);
     ASSERT_TRUE(part);
     EXPECT_EQ(part->events, events);
-    EXPECT_EQ(part->outcome_digest, digest_of(three_balls_at_100()));
+    EXPECT_EQ(part->outcome_digest, outcome_digest_of(outcome));
 }
 
 }  // namespace

@@ -12,8 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "common/net/connection.h"
-#include "common/replication/delta.h"
-#include "common/replication/snapshot_history.h"
+#include "common/replication/snapshot_receiver.h"
 #include "common/replication/wire.h"
 #include "tests/net/memory_network.h"
 
@@ -46,7 +45,7 @@ class FakeClient {
         dialer_.send_reliable(std::vector<std::uint8_t>{0xff, 0xff, 0xff, 0x07});
     }
     void send_input(const game::InputCommand& input) {
-        send({snapshot.tick, ++input_sequence, {input}});
+        send({receiver_.held_tick(), ++input_sequence, {input}});
     }
     void send(const replication::InputPacket& packet) {
         dialer_.send_unreliable(replication::encode(packet));
@@ -83,7 +82,7 @@ class FakeClient {
     std::optional<net::Disconnected> disconnected;
     replication::Snapshot snapshot;  // the newest whole one
     std::uint64_t snapshots = 0;
-    std::uint64_t deltas = 0;  // parts that were not keyframes
+    std::uint64_t replayed = 0;  // of the snapshots
     std::uint32_t acked_input_sequence = 0;
     std::uint32_t input_sequence = 0;
     bool sends_inputs = true;
@@ -99,24 +98,26 @@ class FakeClient {
     void on(const net::UnreliablePayload& event) {
         const auto packet = replication::decode_snapshot_packet(event.bytes);
         ASSERT_TRUE(packet);
-        const auto header = replication::peek_part(packet->part);
-        ASSERT_TRUE(header);
         acked_input_sequence = packet->acked_input_sequence;
-        if (header->baseline_tick != 0) ++deltas;
-        const auto held = history_.find(header->baseline_tick);
-        ASSERT_TRUE(header->baseline_tick == 0 || held) << "a delta against what was never held";
-        if (auto whole = assembler_.add(held ? *held : replication::Snapshot{}, packet->part)) {
-            snapshot = std::move(*whole);
-            ++snapshots;
-            history_.add(std::make_shared<const replication::Snapshot>(snapshot));
+        const auto whole = receiver_.receive(*packet, 2, [this](int level) { return course_of(level); });
+        if (!whole) return;
+        if (packet->kind == replication::SnapshotPacket::Kind::kEvents) ++replayed;
+        snapshot = *whole;
+        ++snapshots;
+    }
+    std::optional<replication::Course> course_of(int number) const {
+        for (const auto& level : heard<replication::LevelStarted>()) {
+            if (level.number == number) {
+                return replication::course_of(level.platform, level.solver);
+            }
         }
+        return std::nullopt;
     }
 
     net::KeyPair key_;
     net::MemoryTransport transport_;
     net::Dialer dialer_;
-    replication::SnapshotAssembler assembler_;
-    replication::SnapshotHistory history_;
+    replication::SnapshotReceiver receiver_;
 };
 
 }  // namespace fts::server

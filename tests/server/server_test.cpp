@@ -29,13 +29,13 @@ TEST_F(ServerTest, welcomes_a_player_and_tells_the_present) {
     EXPECT_EQ(server->player_count(), 1U);
 }
 
-TEST_F(ServerTest, sends_thirty_snapshots_a_second_as_deltas_against_what_the_client_holds) {
+TEST_F(ServerTest, sends_thirty_snapshots_a_second_to_be_replayed_from_what_the_client_holds) {
     start();
     FakeClient& ada = join("Ada");
     const std::uint64_t before = ada.snapshots;
     run(1.0);
     EXPECT_NEAR(static_cast<double>(ada.snapshots - before), 30.0, 1.0);
-    EXPECT_GE(ada.deltas, ada.snapshots - 5);
+    EXPECT_GE(ada.replayed, ada.snapshots - 5);
     EXPECT_EQ(ada.snapshot.balls.size(), 2U);
 }
 

@@ -137,9 +137,11 @@ class AloneOnAPlatform : public ::testing::TestWithParam<Soloist> {
                 if (with_bait) frame.push_back(bait(platform, tick));
                 memory.remember(frame);
                 const auto command = pilot.command(1, stats, platform, memory);
-                world.set_control(id, game::control_for(stats, command));
-                const auto boost = game::advance_dash(dash, stats, command, game::kTickRateHz);
-                if (boost) world.set_velocity(id, body.velocity_mps + *boost);
+                const game::Handling handling = game::handling_of(stats);
+                world.set_control(id, game::control_for(handling, command));
+                if (game::advance_dash(dash, stats, command, game::kTickRateHz)) {
+                    world.set_velocity(id, body.velocity_mps + game::dash_for(handling, command));
+                }
                 world.step(game::kTickDurationS);
                 ASSERT_TRUE(world.contains(id)) << "fell at tick " << tick;
                 ASSERT_LE(world.body(id).velocity_mps.norm(),

@@ -21,7 +21,7 @@ std::uint64_t hash_of(const replication::Snapshot& snapshot) {
     mix(snapshot.tick, snapshot.phase, snapshot.level, snapshot.phase_end_tick);
     for (const auto& ball : snapshot.balls)
         mix(ball.id, ball.x, ball.y, ball.vx, ball.vy, ball.thrust_x, ball.thrust_y, ball.brake,
-            ball.dashed, ball.radius, ball.mass, ball.kind, ball.behaviour, ball.player_id);
+            ball.radius, ball.mass, ball.kind, ball.behaviour, ball.player_id);
     for (const auto& coin : snapshot.coins) mix(coin.id, coin.x, coin.y, coin.value_coins);
     for (const auto& hit : snapshot.hits) mix(hit.tick, hit.a, hit.b, hit.x, hit.y, hit.impulse);
     return hash;

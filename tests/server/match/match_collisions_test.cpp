@@ -107,10 +107,10 @@ TEST(MatchCollisions, a_mass_upgrade_changes_the_next_hit_as_conservation_of_mom
     MatchBench bench({level});
     const PlayerId player = bench.join(1, 100);
     bench.tick_until(Phase::kShop);
-    EXPECT_EQ(bench.ball_of(player)->mass, 256u);
+    EXPECT_EQ(bench.ball_of(player)->mass, 65536u);
     ASSERT_EQ(bench.ledger.buy(key_of(1), 1, game::Stat::kMass, 0).outcome, BuyOutcome::kBought);
     bench.match.upgrades_changed(player);
-    EXPECT_EQ(bench.ball_of(player)->mass, 287u);  // 1.12 kg
+    EXPECT_EQ(bench.ball_of(player)->mass, 73400u);  // 1.12 kg
     bench.tick();
     ASSERT_EQ(bench.said<replication::Wallet>(player).size(), 1u);
     EXPECT_EQ(bench.said<replication::Wallet>(player)[0].tiers[0], 1);
@@ -120,7 +120,8 @@ TEST(MatchCollisions, a_mass_upgrade_changes_the_next_hit_as_conservation_of_mom
     const auto reports = reports_of_ramming(bench, player, 60 * 9);
     ASSERT_FALSE(reports.empty());
     const CollisionReport& hit = reports.front();
-    EXPECT_EQ(hit.own.mass_kg, game::stats_for(bench.ledger.tiers(key_of(1))).mass_kg);
+    EXPECT_NEAR(hit.own.mass_kg, game::stats_for(bench.ledger.tiers(key_of(1))).mass_kg,
+                replication::kMassStepKg / 2);
     expect_elastic(hit);
     // Against a ball at rest: the struck ball leaves with 2 m1 / (m1 + m2) of the speed along the
     // normal.
@@ -148,17 +149,16 @@ TEST(MatchCollisions, hits_since_the_last_snapshot_are_in_the_next_and_then_forg
     EXPECT_TRUE(bench.match.snapshot().hits.empty());
 }
 
-TEST(MatchCollisions, a_dash_is_shown_once_and_changes_the_velocity) {
+TEST(MatchCollisions, a_dash_changes_the_velocity_once) {
     MatchBench bench({quiet_level(1, physics::Disc{12.0})});
     const PlayerId player = bench.join(1);
     bench.tick_until(Phase::kPlaying);
     bench.match.set_input(player, {.thrust_x = 127, .thrust_y = 0, .brake = false, .dash = true});
     bench.tick();
-    EXPECT_TRUE(bench.ball_of(player)->dashed);
-    EXPECT_GT(velocity_of(*bench.ball_of(player)).x(), 3.5);
-    bench.match.clear_hits();
+    const double dashed_mps = velocity_of(*bench.ball_of(player)).x();
+    EXPECT_GT(dashed_mps, 3.5);
     bench.tick();
-    EXPECT_FALSE(bench.ball_of(player)->dashed);
+    EXPECT_NEAR(velocity_of(*bench.ball_of(player)).x(), dashed_mps, 0.2);
 }
 
 }  // namespace

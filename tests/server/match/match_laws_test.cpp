@@ -1,10 +1,12 @@
 // Laws that hold in every tick of any match, however people come, go, play and buy.
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "common/replication/arena_replay.h"
 #include "server/match/random.h"
 #include "tests/server/match/match_bench.h"
 
@@ -185,6 +187,41 @@ TEST_P(RandomMatch, gives_the_same_snapshots_for_the_same_seed_and_calls) {
         hashes.insert(hash);
     }
     EXPECT_GT(hashes.size(), 1000u);
+}
+
+// What a client does: runs on from a snapshot that it holds, by what it is told.
+TEST_P(RandomMatch, is_replayed_to_the_last_bit_from_any_snapshot_of_its_level) {
+    SCOPED_TRACE("seed " + std::to_string(GetParam()));
+    const auto levels = busy_levels(GetParam());
+    MatchBench bench(levels, GetParam());
+    const MatchConfig rules;
+    Crowd crowd(bench, GetParam() + 2000);
+    std::deque<replication::Snapshot> held;
+    int replayed = 0;
+    for (int tick = 0; tick < kTicks; ++tick) {
+        crowd.act();
+        bench.match.tick();
+        bench.match.drain_outgoing();
+        const replication::Snapshot truth = bench.match.snapshot();
+        if (!bench.match.snapshot_is_due() || truth.phase == game::Phase::kWaiting) continue;
+        if (!held.empty() && truth.tick <= held.back().tick) continue;
+        const EventLog& log = bench.match.events();
+        while (!held.empty() && !log.reaches_back_to(held.front().tick)) held.pop_front();
+        if (held.size() > 8) held.pop_front();
+        if (!held.empty()) {
+            const replication::Snapshot& baseline = held.front();
+            const auto& level = levels[static_cast<std::size_t>(bench.match.level_number() - 1)];
+            const replication::Snapshot outcome = replication::replay(
+                replication::course_of(level.platform, {}), baseline, truth.tick,
+                rules.snapshot_ticks, log.between(baseline.tick, truth.tick));
+            ASSERT_EQ(replication::outcome_digest_of(outcome),
+                      replication::outcome_digest_of(truth))
+                << "from tick " << baseline.tick << " to " << truth.tick;
+            ++replayed;
+        }
+        held.push_back(truth);
+    }
+    EXPECT_GT(replayed, kTicks / 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomMatch, ::testing::Values(1u, 2u, 3u));

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/match/hit_log.h"
+#include "common/replication/hit_log.h"
 #include "server/match/id_pool.h"
 #include "server/match/spawn.h"
 #include "tests/server/match/match_bench.h"
@@ -102,12 +102,12 @@ TEST(Match, lets_balls_wait_while_there_is_no_free_spot_and_never_overlaps_them)
 }
 
 TEST(HitLog, keeps_the_strongest_when_there_are_too_many) {
-    HitLog log;
+    replication::HitLog log;
     for (std::uint16_t i = 1; i <= 100; ++i)
         log.add({.tick = 1, .a = i, .b = 200, .impulse = static_cast<std::uint32_t>(i * 7 % 101)});
     EXPECT_EQ(log.left_out(), 36u);
     const auto hits = log.sorted();
-    ASSERT_EQ(hits.size(), HitLog::kMaxHits);
+    ASSERT_EQ(hits.size(), replication::HitLog::kMaxHits);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         EXPECT_GT(hits[i].impulse, 36u);
         EXPECT_TRUE(i == 0 || hits[i].a > hits[i - 1].a);
@@ -115,7 +115,7 @@ TEST(HitLog, keeps_the_strongest_when_there_are_too_many) {
 }
 
 TEST(HitLog, counts_a_pair_once_a_tick_with_its_stronger_hit) {
-    HitLog log;
+    replication::HitLog log;
     log.add({.tick = 1, .a = 1, .b = 2, .impulse = 5});
     log.add({.tick = 1, .a = 1, .b = 2, .impulse = 9});
     log.add({.tick = 1, .a = 1, .b = 2, .impulse = 7});

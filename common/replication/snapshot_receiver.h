@@ -1,0 +1,59 @@
+// SnapshotReceiver: a client's end of the snapshots of one arena. Takes packets as they come, in any
+// order and with gaps, and gives each whole snapshot once, newest only: put together from parts of
+// states, or replayed from one that it holds by the events that followed.
+//
+// Whatever a packet says, what comes out is a canonical snapshot that the sender has, or nothing.
+// Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/replication/arena_replay.h"
+#include "common/replication/delta.h"
+#include "common/replication/messages.h"
+#include "common/replication/snapshot_history.h"
+
+namespace fts::replication {
+
+// The tick that a packet which was decoded is of.
+Tick tick_of(const SnapshotPacket& packet);
+
+class SnapshotReceiver {
+  public:
+    struct Counts {
+        std::uint64_t late = 0;       // snapshots of which something came after a newer one
+        std::uint64_t malformed = 0;  // parts that made no sense
+        // Replayed to another state than the sender's. States are asked for then, by acknowledging
+        // nothing.
+        std::uint64_t unlike = 0;
+    };
+    // What is known of a level; empty before that has been said.
+    using CourseOf = std::function<std::optional<Course>(int level)>;
+
+    // A whole snapshot, newer than every one before, if this packet completes one; else null.
+    std::shared_ptr<const Snapshot> receive(const SnapshotPacket& packet, Tick snapshot_ticks,
+                                            const CourseOf& course_of);
+
+    // What to acknowledge: the newest whole snapshot that is held; 0: none.
+    Tick held_tick() const;
+    Counts counts() const;
+
+  private:
+    bool is_news(Tick tick);
+    std::shared_ptr<const Snapshot> receive_states(std::span<const std::uint8_t> part);
+    std::shared_ptr<const Snapshot> receive_events(std::span<const std::uint8_t> part,
+                                                   Tick snapshot_ticks, const CourseOf& course_of);
+    std::shared_ptr<const Snapshot> keep(Snapshot&& snapshot);
+
+    SnapshotAssembler assembler_;
+    SnapshotHistory history_;
+    std::optional<ArenaReplay> replay_;  // of the newest snapshot
+    Tick newest_tick_ = 0;               // ever
+    bool any_ = false;
+    Counts counts_;
+};
+
+}  // namespace fts::replication
