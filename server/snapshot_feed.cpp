@@ -45,16 +45,15 @@ SnapshotFeed::Coded SnapshotFeed::encode(const replication::Snapshot* baseline,
                                          const EventLog& log) const {
     using Kind = replication::SnapshotPacket::Kind;
     static const replication::Snapshot kNothing;
-    const bool can_be_replayed =
-        baseline && log.reaches_back_to(baseline->tick) &&
-        newest_->tick - baseline->tick <= replication::kMaxPredictedTicks;
+    const bool can_be_replayed = baseline && log.reaches_back_to(baseline->tick) &&
+                                 newest_->tick - baseline->tick <= replication::kMaxPredictedTicks;
     if (can_be_replayed) {
         const replication::ArenaEvents events = log.between(baseline->tick, newest_->tick);
         auto part = replication::encode_events(*baseline, events, *newest_);
         if (part.size() <= kMaxPartBytes) return {Kind::kEvents, {std::move(part)}};
     }
-    return {Kind::kStates, replication::encode_delta(baseline ? *baseline : kNothing, *newest_,
-                                                     kMaxPartBytes)};
+    return {Kind::kStates,
+            replication::encode_delta(baseline ? *baseline : kNothing, *newest_, kMaxPartBytes)};
 }
 
 }  // namespace fts::server

@@ -166,8 +166,8 @@ void ArenaMirror::add_hits(View& view, double draw_tick) {
     while (!pending_hits_.empty() && pending_hits_.front().tick <= draw_tick) {
         const replication::HitState& hit = pending_hits_.front();
         view.hits.push_back({metres(hit.x, hit.y),
-                             replication::dequantise(hit.impulse, replication::kImpulseStepNs), hit.a,
-                             hit.b});
+                             replication::dequantise(hit.impulse, replication::kImpulseStepNs),
+                             hit.a, hit.b});
         pending_hits_.pop_front();
     }
 }

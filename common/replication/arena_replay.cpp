@@ -58,9 +58,8 @@ void ArenaReplay::step(std::span<const ArenaChange> changes,
     for (const ControlEvent& event : controls) {
         const auto slot = world_.slot_of(event.ball);
         if (!slot) continue;
-        world_.steer(*slot, {.thrust_x = event.thrust_x,
-                             .thrust_y = event.thrust_y,
-                             .brake = event.brake});
+        world_.steer(
+            *slot, {.thrust_x = event.thrust_x, .thrust_y = event.thrust_y, .brake = event.brake});
         if (event.dash) world_.dash(*slot);
     }
     if (moving) {

@@ -1,6 +1,6 @@
-// ArenaReplay: an arena run on from a snapshot by the events that the server tells of, tick by tick,
-// with the physics that both ends share. What comes out is the server's own snapshot, to the last
-// bit; between snapshots it has every tick, and every hit with its moment.
+// ArenaReplay: an arena run on from a snapshot by the events that the server tells of, tick by
+// tick, with the physics that both ends share. What comes out is the server's own snapshot, to the
+// last bit; between snapshots it has every tick, and every hit with its moment.
 //
 // Starts at a snapshot of a server that snaps its state every `snapshot_ticks` ticks. Events say
 // anything; what they say of balls that are not there does nothing. Not thread-safe.

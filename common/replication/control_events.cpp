@@ -215,8 +215,8 @@ std::uint32_t outcome_digest_of(const Snapshot& snapshot) {
         digest.add(coin.x);
         digest.add(coin.y);
     }
-    digest.add(std::uint32_t{snapshot.arena} |
-               static_cast<std::uint32_t>(snapshot.phase) << 8 | std::uint32_t{snapshot.level} << 16);
+    digest.add(std::uint32_t{snapshot.arena} | static_cast<std::uint32_t>(snapshot.phase) << 8 |
+               std::uint32_t{snapshot.level} << 16);
     digest.add(snapshot.phase_end_tick);
     return digest.value();
 }

@@ -1,5 +1,5 @@
-// What happens to an arena that both ends simulate alike: who steers how, which balls and coins come
-// and go, and when a phase begins. With a server that keeps its state on the lattice
+// What happens to an arena that both ends simulate alike: who steers how, which balls and coins
+// come and go, and when a phase begins. With a server that keeps its state on the lattice
 // (lattice_world.h) nothing else need travel: arena_replay.h makes snapshots of it.
 //
 // Two pure functions: the events since a baseline as bytes, with a digest of the snapshot they lead

@@ -24,8 +24,7 @@ void add_ball(Fnv1a& hash, const BallState& ball) {
     hash.add(ball.vx);
     hash.add(ball.vy);
     hash.add(byte(ball.thrust_x) | byte(ball.thrust_y) << 8 | std::uint32_t{ball.brake} << 16 |
-             std::uint32_t{ball.kind} << 18 |
-             std::uint32_t{ball.behaviour} << 19);
+             std::uint32_t{ball.kind} << 18 | std::uint32_t{ball.behaviour} << 19);
     hash.add(std::uint32_t{ball.radius});
     hash.add(ball.mass);
     hash.add(ball.handling.acceleration);

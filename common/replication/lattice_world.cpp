@@ -119,10 +119,9 @@ void LatticeWorld::list_all() {
 }
 
 std::vector<LatticeWorld::Entry>::const_iterator LatticeWorld::find(std::uint16_t id) const {
-    return std::lower_bound(entries_.begin(), entries_.end(), id,
-                            [](const Entry& entry, std::uint16_t wanted) {
-                                return entry.id < wanted;
-                            });
+    return std::lower_bound(
+        entries_.begin(), entries_.end(), id,
+        [](const Entry& entry, std::uint16_t wanted) { return entry.id < wanted; });
 }
 
 std::optional<std::size_t> LatticeWorld::slot_of(std::uint16_t id) const {

@@ -2,11 +2,11 @@
 // balls, calls and course give the same bits at both ends.
 //
 // `snap` puts the running state onto the lattice. A server that snaps at every snapshot has nothing
-// that its clients do not have: who runs on from such a snapshot, snaps as it does, and steers, puts
-// and removes what it does in the same order, stays with it to the last bit.
+// that its clients do not have: who runs on from such a snapshot, snaps as it does, and steers,
+// puts and removes what it does in the same order, stays with it to the last bit.
 //
-// A ball has a slot, which it keeps until the next `snap`: from then on, as at first, slots ascend by
-// id.
+// A ball has a slot, which it keeps until the next `snap`: from then on, as at first, slots ascend
+// by id.
 #pragma once
 
 #include <cstddef>

@@ -17,8 +17,8 @@ namespace fts::replication {
 
 using Tick = std::uint32_t;
 
-// A ball that slows down by k a second stops slowing, on the lattice, at a speed of half a step over
-// k times the time between snapshots: about a millimetre a second here.
+// A ball that slows down by k a second stops slowing, on the lattice, at a speed of half a step
+// over k times the time between snapshots: about a millimetre a second here.
 inline constexpr double kPositionStepM = 1.0 / 65536.0;
 inline constexpr double kVelocityStepMps = 1.0 / 16384.0;
 inline constexpr double kRadiusStepM = 1.0 / 4096.0;

@@ -24,7 +24,8 @@ constexpr std::size_t kRoomForBall = 64;
 // A ball whose every adaptive bit is the unlikeliest. The longest is one that joins: ten numbers of
 // 34 adaptive bits and 30 plain ones; 49 plain bits of its body; 17 adaptive ones of its control;
 // whether it joins, and whether another does; and what the coder loses by
-// rounding its range, less than a hundredth of a bit for each of at most 500 calls. So one ball always fits a part.
+// rounding its range, less than a hundredth of a bit for each of at most 500 calls. So one ball
+// always fits a part.
 constexpr std::size_t kMaxAdaptiveBits = 11;
 static_assert(kLeastChance << kMaxAdaptiveBits >= 0x10000U);
 constexpr std::size_t kMaxBallBits =

@@ -1,6 +1,6 @@
-// SnapshotReceiver: a client's end of the snapshots of one arena. Takes packets as they come, in any
-// order and with gaps, and gives each whole snapshot once, newest only: put together from parts of
-// states, or replayed from one that it holds by the events that followed.
+// SnapshotReceiver: a client's end of the snapshots of one arena. Takes packets as they come, in
+// any order and with gaps, and gives each whole snapshot once, newest only: put together from parts
+// of states, or replayed from one that it holds by the events that followed.
 //
 // Whatever a packet says, what comes out is a canonical snapshot that the sender has, or nothing.
 // Not thread-safe.

@@ -24,8 +24,7 @@ class StateDigest {
         add(ball.vx);
         add(ball.vy);
         add(byte(ball.thrust_x) | byte(ball.thrust_y) << 8 | std::uint32_t{ball.brake} << 16 |
-            std::uint32_t{ball.kind} << 18 |
-            std::uint32_t{ball.behaviour} << 20);
+            std::uint32_t{ball.kind} << 18 | std::uint32_t{ball.behaviour} << 20);
         add(std::uint32_t{ball.radius});
         add(ball.mass);
         add(ball.handling.acceleration);

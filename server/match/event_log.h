@@ -1,5 +1,5 @@
-// What was done to an arena from outside its physics since a level began: what a client that holds a
-// snapshot of it needs to replay what came after. Events older than any baseline are forgotten.
+// What was done to an arena from outside its physics since a level began: what a client that holds
+// a snapshot of it needs to replay what came after. Events older than any baseline are forgotten.
 #pragma once
 
 #include <deque>

@@ -9,9 +9,9 @@
 namespace fts::server {
 
 using physics::Vec2d;
+using replication::ArenaChange;
 using replication::BallState;
 using replication::quantise;
-using replication::ArenaChange;
 
 Actor Match::Impl::actor_of(std::uint16_t ball) const {
     const PlayerId player = balls.at(ball).player;
@@ -110,19 +110,19 @@ void Match::Impl::settle_on_lattice(game::BallStats& stats) {
 // At rest, with nobody steering.
 BallState Match::Impl::state_of(std::uint16_t id, const Ball& ball, const Vec2d& position_m) const {
     const bool is_player = ball.player != 0;
-    return {.id = id,
-            .x = quantise(position_m.x(), replication::kPositionStepM),
-            .y = quantise(position_m.y(), replication::kPositionStepM),
-            .radius = static_cast<std::uint16_t>(
-                quantise(ball.stats.radius_m, replication::kRadiusStepM)),
-            .mass =
-                static_cast<std::uint32_t>(quantise(ball.stats.mass_kg, replication::kMassStepKg)),
-            .kind = static_cast<std::uint8_t>(is_player ? replication::BallKind::kPlayer
-                                                        : replication::BallKind::kAi),
-            .behaviour =
-                static_cast<std::uint8_t>(is_player ? game::Behaviour::kChaser : ball.behaviour),
-            .player_id = ball.player,
-            .handling = replication::quantised(game::handling_of(ball.stats))};
+    return {
+        .id = id,
+        .x = quantise(position_m.x(), replication::kPositionStepM),
+        .y = quantise(position_m.y(), replication::kPositionStepM),
+        .radius =
+            static_cast<std::uint16_t>(quantise(ball.stats.radius_m, replication::kRadiusStepM)),
+        .mass = static_cast<std::uint32_t>(quantise(ball.stats.mass_kg, replication::kMassStepKg)),
+        .kind = static_cast<std::uint8_t>(is_player ? replication::BallKind::kPlayer
+                                                    : replication::BallKind::kAi),
+        .behaviour =
+            static_cast<std::uint8_t>(is_player ? game::Behaviour::kChaser : ball.behaviour),
+        .player_id = ball.player,
+        .handling = replication::quantised(game::handling_of(ball.stats))};
 }
 
 void Match::Impl::remove_ball(std::uint16_t id) {

@@ -35,15 +35,14 @@ void Match::Impl::think() {
 void Match::Impl::apply_controls() {
     for (auto& [id, ball] : balls) {
         const game::InputCommand& wanted = ball.input;
-        const bool dashes =
-            game::advance_dash(ball.dash, ball.stats, wanted, game::kTickRateHz);
+        const bool dashes = game::advance_dash(ball.dash, ball.stats, wanted, game::kTickRateHz);
         const game::InputCommand steering{wanted.thrust_x, wanted.thrust_y, wanted.brake};
         if (steering == ball.held && !dashes) continue;
         ball.held = steering;
         const std::size_t slot = arena->slot_of(id).value();
-        arena->steer(slot, {.thrust_x = wanted.thrust_x,
-                            .thrust_y = wanted.thrust_y,
-                            .brake = wanted.brake});
+        arena->steer(
+            slot,
+            {.thrust_x = wanted.thrust_x, .thrust_y = wanted.thrust_y, .brake = wanted.brake});
         if (dashes) arena->dash(slot);
         log.add(replication::ControlEvent{now, id, wanted.thrust_x, wanted.thrust_y, wanted.brake,
                                           dashes});

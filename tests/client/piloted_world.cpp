@@ -65,8 +65,7 @@ void PilotedWorld::tick(Pilot& pilot, Rng& rng) {
         world_.set_control(ids_.front(), game::control_for(handling, command));
         const auto own = world_.body(ids_.front());
         if (game::advance_dash(dash_, stats_, command, game::kTickRateHz)) {
-            world_.set_velocity(ids_.front(),
-                                own.velocity_mps + game::dash_for(handling, command));
+            world_.set_velocity(ids_.front(), own.velocity_mps + game::dash_for(handling, command));
         }
         std::erase_if(coins_, [&](const client::CoinView& coin) {
             return (coin.position_m - own.position_m).norm() <

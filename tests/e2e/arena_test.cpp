@@ -8,6 +8,7 @@
 #include "client/core/session.h"
 #include "common/game/upgrades.h"
 #include "common/net/udp_transport.h"
+#include "common/replication/snapshot.h"
 #include "tests/e2e/arena_process.h"
 #include "tests/harness/clock.h"
 
@@ -156,7 +157,10 @@ TEST(Arena, ABoughtMassUpgradeChangesTheNextCollisionAsMomentumConservationPredi
 
     const auto hit = next_hit_of(server.address(), bots.file("bot-0.key"));
     ASSERT_TRUE(hit);
-    const double bought_kg = game::stats_for({1, 0, 0, 0, 0, 0}).mass_kg;
+    // 1.12 kg, to the step in which masses travel.
+    const double bought_kg = replication::kMassStepKg *
+                             replication::quantise(game::stats_for({1, 0, 0, 0, 0, 0}).mass_kg,
+                                                   replication::kMassStepKg);
     EXPECT_EQ(hit->own.mass_kg, bought_kg);
     const double after = hit->own.velocity_after_mps.dot(hit->normal);
     EXPECT_NEAR(after, predicted_normal_speed_mps(*hit, bought_kg), 1e-9);

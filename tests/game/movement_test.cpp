@@ -31,7 +31,8 @@ TEST(Movement, BrakingAddsItsDragAndBuysMore) {
     const InputCommand brake{.brake = true};
     EXPECT_DOUBLE_EQ(control_for(handling_of(base), brake).drag_per_s,
                      control_for(handling_of(base), {}).drag_per_s + base.braking_per_s);
-    EXPECT_GT(control_for(handling_of(better), brake).drag_per_s, control_for(handling_of(base), brake).drag_per_s);
+    EXPECT_GT(control_for(handling_of(better), brake).drag_per_s,
+              control_for(handling_of(base), brake).drag_per_s);
 }
 
 TEST(Movement, ADashFiresOnceAndAgainOnlyWhenRecharged) {

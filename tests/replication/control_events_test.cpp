@@ -125,9 +125,9 @@ class BusyArena {
     }
     void take_coin() {
         if (state_.coins.empty()) return;
-        const auto coin = state_.coins.begin() + static_cast<std::ptrdiff_t>(
-                                                     static_cast<std::size_t>(rng_()) %
-                                                     state_.coins.size());
+        const auto coin =
+            state_.coins.begin() +
+            static_cast<std::ptrdiff_t>(static_cast<std::size_t>(rng_()) % state_.coins.size());
         events_.changes.push_back(ArenaChange::coin_gone(state_.tick, coin->id));
         state_.coins.erase(coin);
     }
@@ -196,9 +196,9 @@ TEST(ControlEvents, ThatWereAlteredAreNothingOrLeadElsewhere) {
     const auto bytes = encode_events(baseline, server.since(baseline.tick), server.snapshot());
     const auto is_shown = [&](const std::vector<std::uint8_t>& arrived) {
         const auto part = decode_events(baseline, arrived);
-        return part && part->outcome_digest ==
-                           outcome_digest_of(replay(disc_course(), baseline, part->tick,
-                                                    kTicksASnapshot, part->events));
+        return part &&
+               part->outcome_digest == outcome_digest_of(replay(disc_course(), baseline, part->tick,
+                                                                kTicksASnapshot, part->events));
     };
     ASSERT_TRUE(is_shown(bytes));
     Snapshot older = baseline;
