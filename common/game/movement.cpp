@@ -23,7 +23,7 @@ physics::Control<double> control_for(const Handling& handling, const InputComman
 
 physics::Vec2d dash_for(const Handling& handling, const InputCommand& input) {
     const physics::Vec2d direction = thrust_of(input);
-    if (direction.isZero()) return direction;
+    if (direction.isZero()) return physics::Vec2d::Zero();
     return direction.normalized() * handling.dash_mps;
 }
 

@@ -23,8 +23,8 @@ std::vector<ControlEvent> in_time(const ArenaEvents& events) {
 
 template <typename Event>
 std::span<const Event> of_tick(const std::vector<Event>& events, Tick tick) {
-    const auto range = std::ranges::equal_range(events, tick, {}, &Event::tick);
-    return {range.begin(), range.end()};
+    return {std::ranges::lower_bound(events, tick, {}, &Event::tick),
+            std::ranges::upper_bound(events, tick, {}, &Event::tick)};
 }
 
 }  // namespace

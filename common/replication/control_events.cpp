@@ -146,8 +146,8 @@ std::vector<Steered> steered_of(const Snapshot& baseline, const std::vector<Aren
     }
     if (all.size() == held) return all;
     std::ranges::stable_sort(all, {}, &Steered::id);
-    const auto repeated = std::ranges::unique(all, {}, &Steered::id);
-    all.erase(repeated.begin(), repeated.end());
+    const auto same = [](const Steered& a, const Steered& b) { return a.id == b.id; };
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
     return all;
 }
 

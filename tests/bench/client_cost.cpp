@@ -117,7 +117,8 @@ class Table {
     }
     void write() {
         for (const net::ConnectionId id : ids_) {
-            const auto packet = replication::encode(replication::SnapshotPacket{1, 8, snapshot_});
+            const auto packet = replication::encode(replication::SnapshotPacket{
+                .acked_input_sequence = 1, .input_slack = 8, .part = snapshot_});
             listener_.send_unreliable(id, packet);
         }
     }

@@ -108,9 +108,10 @@ class Line {
         snapshot.tick = tick_;
         const auto part =
             replication::encode_delta({}, snapshot, replication::kMinPartBytes).front();
-        server_.send(kClient, replication::encode(replication::SnapshotPacket{
-                                  queue_.applied_sequence(),
-                                  dry ? replication::kNoInputWaited : least, part}));
+        server_.send(kClient,
+                     replication::encode(replication::SnapshotPacket{
+                         queue_.applied_sequence(), dry ? replication::kNoInputWaited : least,
+                         replication::SnapshotPacket::Kind::kStates, part}));
     }
 
     Conditions conditions_;
