@@ -46,6 +46,8 @@ Server::Server(const ServerConfig& config, net::Transport& transport, std::uniqu
     for (const std::string& line : describe_levels(plans)) log_(LogLevel::kInfo, line);
     MatchConfig match;
     for (const physics::Plan& plan : plans) match.solvers.push_back(plan.solver);
+    match.snapshot_ticks =
+        static_cast<replication::Tick>(game::kTickRateHz / config.snapshot_rate_hz);
     for (int i = 0; i < config.arenas; ++i) {
         match.arena = i;
         match.seed = config.seed + static_cast<std::uint64_t>(i);

@@ -35,6 +35,7 @@ class ArenaMirror {
 
     bool has_snapshot() const { return !snapshots_.empty(); }
     replication::Tick newest_tick() const;
+    std::uint16_t own_player_id() const { return own_player_id_; }
     const game::Tiers& tiers() const { return wallet_.tiers; }
     // What both ends know of a level; empty before its message has come.
     std::optional<replication::Course> course_of(int level) const;

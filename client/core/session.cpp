@@ -9,6 +9,7 @@
 #include "client/core/end_words.h"
 #include "client/core/input_pacer.h"
 #include "client/core/input_queue.h"
+#include "client/core/own_ball_prediction.h"
 #include "client/core/server_clock.h"
 #include "common/game/rules.h"
 #include "common/replication/snapshot_receiver.h"
@@ -61,7 +62,8 @@ struct Session::Impl {
     void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
     void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
     void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
-    void take_snapshot(std::shared_ptr<const Snapshot> snapshot);
+    void take_snapshot(std::shared_ptr<const Snapshot> snapshot, std::uint32_t acked_input);
+    void predict(View& view, double now_s);
     void count_missed_before(replication::Tick tick);
     void welcome(const replication::Welcome& message, double now_s);
     void send_due_inputs(double now_s);
@@ -87,6 +89,8 @@ struct Session::Impl {
     InputQueue inputs;
     InputPacer pacer;
     game::InputCommand held_input;
+    OwnBallPrediction prediction;
+    bool shows_prediction = true;
     double input_slack_s = 0.0;
     std::uint64_t next_request_id = random_request_id();
 
@@ -175,7 +179,7 @@ void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes,
     const auto whole_ticks = std::max(1LL, std::llround(ticks_per_snapshot));
     auto snapshot = receiver.receive(*packet, static_cast<replication::Tick>(whole_ticks),
                                      [this](int level) { return arena.course_of(level); });
-    if (snapshot) take_snapshot(std::move(snapshot));
+    if (snapshot) take_snapshot(std::move(snapshot), packet->acked_input_sequence);
 }
 
 void Session::Impl::take_input_timing(const replication::SnapshotPacket& packet, double now_s) {
@@ -198,10 +202,13 @@ void Session::Impl::count_missed_before(replication::Tick tick) {
     recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
 }
 
-void Session::Impl::take_snapshot(std::shared_ptr<const Snapshot> snapshot) {
+void Session::Impl::take_snapshot(std::shared_ptr<const Snapshot> snapshot,
+                                  std::uint32_t acked_input) {
     count_missed_before(snapshot->tick);
     ++stats.snapshots_received;
     clock.observe(double(snapshot->tick) / arena.tick_rate_hz(), arrival_s);
+    const auto course = config.predicts_own_ball ? arena.course_of(snapshot->level) : std::nullopt;
+    if (course) prediction.rebase(*course, *snapshot, arena.own_player_id(), acked_input);
     arena.add(std::move(snapshot));
 }
 
@@ -213,6 +220,8 @@ void Session::Impl::send_due_inputs(double now_s) {
     for (int i = 0; i < due.inputs; ++i) {
         inputs.push(held_input);
         ++stats.inputs_sent;
+        if (!config.predicts_own_ball) continue;
+        prediction.push(held_input, game::stats_for(arena.tiers()), arena.tick_rate_hz(), now_s);
     }
     dialer.send_unreliable(replication::encode(inputs.packet(receiver.held_tick())));
 }
@@ -250,6 +259,10 @@ void Session::update(double now_s) {
     for (const net::Event& event : impl_->dialer.drain_events()) impl_->handle(event, now_s);
     impl_->send_due_inputs(now_s);
     impl_->transport.flush();
+}
+
+void Session::show_prediction(bool shown) {
+    impl_->shows_prediction = shown;
 }
 
 void Session::set_input(const game::InputCommand& input) {
@@ -296,10 +309,23 @@ std::optional<net::PublicKey> Session::server_key() const {
     return impl_->server_key;
 }
 
+void Session::Impl::predict(View& view, double now_s) {
+    if (!config.predicts_own_ball) return;
+    const auto pose = prediction.pose(now_s);
+    if (!pose || !view.own_ball || !shows_prediction) return;
+    BallView& own = view.balls[*view.own_ball];
+    view.own_by_server_m = own.position_m;
+    own.position_m = pose->position_m;
+    own.velocity_mps = pose->velocity_mps;
+    own.thrust = game::thrust_of(held_input);
+    own.braking = held_input.brake;
+}
+
 View Session::view(double now_s) {
     Impl& self = *impl_;
     const bool drawing = self.clock.started();
     View view = self.arena.view_at(drawing ? self.clock.draw_time_s(now_s) : 0.0);
+    self.predict(view, now_s);
     const net::LinkStats link = self.dialer.stats();
     view.link.rtt_s = link.rtt_s;
     view.link.loss = std::max(link.loss, self.recent_loss);

@@ -28,6 +28,8 @@ struct SessionConfig {
     // Views have the kink of a hit between two snapshots where it happened, for a few microseconds
     // a ball and snapshot; else straight lines.
     bool follows_hits = true;
+    // Runs the own ball ahead of the server's snapshots (own_ball_prediction.h).
+    bool predicts_own_ball = false;
 };
 
 enum class Status : std::uint8_t { kConnecting, kJoining, kPlaying, kEnded };
@@ -78,6 +80,9 @@ class Session {
     // Receives what has arrived, sends inputs that are due. Call at least once per frame.
     void update(double now_s);
 
+    // Whether views show the own ball where it is predicted to be, if it is predicted; at first,
+    // yes.
+    void show_prediction(bool shown);
     // Held until the next call.
     void set_input(const game::InputCommand& input);
     // Returns the request id. The result comes as a Notice.

@@ -65,6 +65,9 @@ struct View {
     std::vector<replication::PlayerInfo> players;
     std::uint16_t own_player_id = 0;
     std::optional<std::size_t> own_ball;  // index into balls; empty while off the platform
+    // Where the server's snapshots have the own ball at this moment, when it is drawn where it is
+    // predicted to be instead.
+    std::optional<physics::Vec2d> own_by_server_m;
     int coins_held = 0;
     game::Tiers tiers{};
     std::optional<replication::CollisionReport> last_own_hit;

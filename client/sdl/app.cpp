@@ -174,6 +174,7 @@ void App::Impl::connect(const std::string& name, const std::optional<net::Public
     session_config.key = key;
     session_config.server = *address;
     session_config.pinned_server_key = pin;
+    session_config.predicts_own_ball = config.predict;
     session = std::make_unique<client::Session>(session_config, *transport);
     stage = Stage::kSession;
 }
@@ -277,6 +278,7 @@ void App::Impl::update_session(double now_s) {
     }
     count_dash(command, view, now_s - updated_s, match.hud);
     session->set_input(command);
+    session->show_prediction(!shows_laws(match));
     session->update(now_s);
     pin_server();
     if (session->status() == client::Status::kEnded) {

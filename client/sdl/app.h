@@ -16,6 +16,7 @@ struct AppConfig {
     int height_px = 720;
     bool fullscreen = false;
     bool software = false;            // draw without a GPU
+    bool predict = true;              // the own ball, ahead of the server
     std::string screenshot_file;      // empty: none
     double screenshot_after_s = 5.0;  // then the program quits
 };

@@ -163,6 +163,18 @@ void draw_behaviour_glyph(const Canvas& canvas, ImVec2 centre, float size,
     }
 }
 
+void draw_ghost(const Canvas& canvas, const Camera& camera, const client::View& view) {
+    if (!view.own_ball || !view.own_by_server_m) return;
+    const client::BallView& own = view.balls[*view.own_ball];
+    const ImVec2 here = camera.to_screen(own.position_m);
+    const ImVec2 there = camera.to_screen(*view.own_by_server_m);
+    const float radius = drawn_radius(canvas, camera, own);
+    canvas.list->AddLine(there, here, fade(palette::kText, 0.35), std::max(1.0F, canvas.px(1.2F)));
+    canvas.gradient_ring(there, 0, fade(ball_colour(own), 0.10), radius,
+                         fade(ball_colour(own), 0.35));
+    canvas.ring(there, radius, fade(palette::kText, 0.55), std::max(1.2F, canvas.px(1.5F)));
+}
+
 void draw_own_ball(const Canvas& canvas, const Camera& camera, const client::View& view) {
     if (view.own_ball) draw_one(canvas, camera, view.balls[*view.own_ball]);
 }

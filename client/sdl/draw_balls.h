@@ -26,6 +26,8 @@ struct Arrows {
 };
 void draw_balls(const Canvas& canvas, const Camera& camera, const client::View& view,
                 const Arrows& arrows);
+// Where the server's snapshots have the own ball, when it is drawn elsewhere.
+void draw_ghost(const Canvas& canvas, const Camera& camera, const client::View& view);
 // Once more, above something that dims the others.
 void draw_own_ball(const Canvas& canvas, const Camera& camera, const client::View& view);
 

@@ -217,6 +217,7 @@ void draw_keys(const Canvas& canvas, const HudState& state) {
         {"E", "last hit"},
         {"V", state.velocity_arrows ? "hide velocities" : "show velocities"},
         {"M", state.momentum_arrows ? "hide momenta" : "show momenta"},
+        {"G", state.ghost ? "hide the ghost" : "server's ghost"},
         {"C", "camera"},
         {"T", "chat"},
         {"H", "hide these keys"},

@@ -21,6 +21,7 @@ struct HudState {
     std::deque<FeedLine> chat;
     bool velocity_arrows = false;
     bool momentum_arrows = false;
+    bool ghost = false;  // where the server has the own ball
     bool shows_keys = true;
     double dash_ready_in_s = 0.0;  // as far as this end can tell
 };

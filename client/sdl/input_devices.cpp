@@ -92,6 +92,9 @@ void InputDevices::press(SDL_Scancode key) {
         case SDL_SCANCODE_M:
             actions_.momenta = true;
             break;
+        case SDL_SCANCODE_G:
+            actions_.ghost = true;
+            break;
         case SDL_SCANCODE_C:
             actions_.camera = true;
             break;

@@ -28,6 +28,9 @@ void declare(CLI::App& app, fts::sdl::AppConfig& config) {
         ->capture_default_str();
     app.add_flag("--fullscreen", config.fullscreen, "Fill the screen")->envname("FTS_FULLSCREEN");
     app.add_flag("--software", config.software, "Draw without a GPU")->envname("FTS_SOFTWARE");
+    app.add_flag("!--no-prediction", config.predict,
+                 "Draw your ball where the server has it, not where it will be by now")
+        ->envname("FTS_PREDICTION");
     CLI::Option* screenshot =
         app.add_option("--screenshot", config.screenshot_file,
                        "Write the window to this PNG file after --after seconds, then quit")

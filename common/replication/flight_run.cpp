@@ -59,7 +59,11 @@ void FlightRecorder::steer(std::span<const ControlEvent> events) {
         ball->thrust_x = event.thrust_x;
         ball->thrust_y = event.thrust_y;
         ball->brake = event.brake;
-        control(static_cast<std::size_t>(ball - held_.begin()), physics::Vec2d::Zero());
+        const auto index = static_cast<std::size_t>(ball - held_.begin());
+        control(index, physics::Vec2d::Zero());
+        if (!event.dash || !course_.dash_of || run_.balls[index].fell) continue;
+        const physics::BodyId id = ids_[index];
+        world_.set_velocity(id, world_.body(id).velocity_mps + course_.dash_of(*ball));
     }
 }
 
@@ -132,7 +136,7 @@ FlightRun run_flight(const Course& course, std::span<const BallState> balls, Tic
     auto next = in_time.begin();
     for (Tick tick = 0; tick < ticks; ++tick) {
         const auto due = next;
-        while (next != in_time.end() && next->tick <= from + tick) ++next;
+        while (next != in_time.end() && next->tick <= from + tick + 1) ++next;
         recorder.steer({due, next});
         if (!pushes.mps2.empty()) recorder.push(pushes, tick);
         recorder.advance(tick);

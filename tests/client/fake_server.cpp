@@ -105,10 +105,10 @@ void FakeServer::send_snapshot() {
     const replication::Snapshot nothing;
     const auto parts = replication::encode_delta(held ? *held : nothing, *snapshot, 1000);
     for (const auto& part : parts) {
-        listener_.send_unreliable(*client_, replication::encode(replication::SnapshotPacket{
-                                                .acked_input_sequence = last_applied,
-                                                .input_slack = input_slack,
-                                                .part = part}));
+        listener_.send_unreliable(
+            *client_,
+            replication::encode(replication::SnapshotPacket{
+                .acked_input_sequence = last_applied, .input_slack = input_slack, .part = part}));
     }
 }
 

@@ -76,6 +76,7 @@ void draw_arena(Canvas& canvas, const client::View& view, MatchState& state) {
     draw_platform(canvas, state.camera, view.level.platform);
     draw_coins(canvas, state.camera, view.coins);
     state.effects.draw_below_balls(canvas, state.camera);
+    if (state.hud.ghost) draw_ghost(canvas, state.camera, view);
     draw_balls(canvas, state.camera, view, {state.hud.velocity_arrows, state.hud.momentum_arrows});
     state.effects.draw_above_balls(canvas, state.camera);
 }
@@ -123,6 +124,10 @@ void draw_pause(Canvas& canvas, MatchState& state, MatchChoice& choice) {
 
 }  // namespace
 
+bool shows_laws(const MatchState& state) {
+    return state.inspecting || state.hud.velocity_arrows || state.hud.momentum_arrows;
+}
+
 bool steers(const MatchState& state, const client::View& view) {
     return !state.inspecting && !state.paused && !state.chatting &&
            view.phase != game::Phase::kShop;
@@ -140,6 +145,7 @@ void apply(const Actions& actions, MatchState& state, const client::View& view) 
     if (actions.inspector) state.inspecting = !state.inspecting;
     if (actions.velocities) state.hud.velocity_arrows = !state.hud.velocity_arrows;
     if (actions.momenta) state.hud.momentum_arrows = !state.hud.momentum_arrows;
+    if (actions.ghost) state.hud.ghost = !state.hud.ghost;
     if (actions.keys) state.hud.shows_keys = !state.hud.shows_keys;
     if (actions.camera) {
         state.camera_mode =

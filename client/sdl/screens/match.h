@@ -21,7 +21,7 @@ namespace fts::sdl {
 // What the player did with keys or buttons since the last frame, beside steering.
 struct Actions {
     bool inspector = false, velocities = false, momenta = false, camera = false, keys = false;
-    bool chat = false, back = false;
+    bool ghost = false, chat = false, back = false;
     std::optional<int> slot;  // 0 to 5, of the shop
 };
 
@@ -45,6 +45,10 @@ struct MatchChoice {
     std::optional<std::string> chat;
     bool leave = false, quit = false;
 };
+
+// True while something is shown that is to hold to the last bit: then every ball is drawn where the
+// server has it, at one moment.
+bool shows_laws(const MatchState& state);
 
 // True while keys, mouse and gamepad steer the ball rather than a menu.
 bool steers(const MatchState& state, const client::View& view);
