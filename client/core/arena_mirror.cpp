@@ -26,11 +26,11 @@ std::vector<replication::PlayerInfo> with_printable_names(
     return players;
 }
 
-// A server's word; a platform that makes no sense is left out.
-replication::Course course_of(const replication::LevelStarted& level, int tick_rate_hz) {
-    replication::Course course;
-    course.scene.platform = level.platform;
-    if (physics::validate(course.scene)) course.scene.platform.reset();
+// A server's word; of a platform that makes no sense nothing is known.
+std::optional<replication::Course> course_on(const replication::LevelStarted& level,
+                                             int tick_rate_hz) {
+    replication::Course course = replication::course_of(level.platform, level.solver);
+    if (physics::validate(course.scene)) return std::nullopt;
     course.tick_s = 1.0 / tick_rate_hz;
     return course;
 }
@@ -82,7 +82,8 @@ void ArenaMirror::apply(const replication::ServerMessage& message) {
     }
 }
 
-void ArenaMirror::add(std::shared_ptr<const Snapshot> snapshot) {
+void ArenaMirror::add(std::shared_ptr<const Snapshot> snapshot,
+                      std::vector<replication::ControlEvent> controls) {
     assert(snapshots_.empty() || snapshot->tick > newest_tick());
     for (const replication::HitState& hit : snapshot->hits) {
         if (pending_hits_.size() == kMaxPendingHits) {
@@ -92,7 +93,8 @@ void ArenaMirror::add(std::shared_ptr<const Snapshot> snapshot) {
         pending_hits_.push_back(hit);
     }
     snapshots_.push_back(std::move(snapshot));
-    if (snapshots_.size() > kMaxHeldSnapshots) snapshots_.pop_front();
+    controls_.push_back(std::move(controls));
+    if (snapshots_.size() > kMaxHeldSnapshots) drop_oldest();
 }
 
 replication::Tick ArenaMirror::newest_tick() const {
@@ -102,7 +104,7 @@ replication::Tick ArenaMirror::newest_tick() const {
 std::optional<replication::Course> ArenaMirror::course_of(int level) const {
     const auto found = std::ranges::find(levels_, level, &replication::LevelStarted::number);
     if (found == levels_.end()) return std::nullopt;
-    return replication::course_of(found->platform, found->solver);
+    return course_on(*found, tick_rate_hz_);
 }
 
 const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
@@ -125,7 +127,7 @@ View ArenaMirror::view_at(double server_time_s) {
     view.server_time_s = server_time_s;
     const double draw_tick = server_time_s * tick_rate_hz_;
     // Only the newest snapshot at or before this moment, and what comes after it, are still needed.
-    while (snapshots_.size() > 1 && snapshots_[1]->tick <= draw_tick) snapshots_.pop_front();
+    while (snapshots_.size() > 1 && snapshots_[1]->tick <= draw_tick) drop_oldest();
     const Snapshot& shown = *snapshots_.front();
     view.phase = shown.phase;
     if (shown.phase_end_tick != 0) {
@@ -140,6 +142,11 @@ View ArenaMirror::view_at(double server_time_s) {
     return view;
 }
 
+void ArenaMirror::drop_oldest() {
+    snapshots_.pop_front();
+    controls_.pop_front();
+}
+
 std::vector<BallPose> ArenaMirror::poses_at(double draw_tick) {
     const Snapshot& from = *snapshots_.front();
     const Snapshot& to = snapshots_.size() > 1 ? *snapshots_[1] : from;
@@ -148,10 +155,12 @@ std::vector<BallPose> ArenaMirror::poses_at(double draw_tick) {
     }
     const replication::LevelStarted& level = level_numbered(from.level);
     if (!interpolation_ || interpolated_level_ != level.number) {
-        interpolation_.emplace(course_of(level, tick_rate_hz_));
+        const auto course = course_on(level, tick_rate_hz_);
+        if (!course) return interpolate(from, to, draw_tick, tick_rate_hz_);
+        interpolation_.emplace(*course);
         interpolated_level_ = level.number;
     }
-    return interpolation_->at(from, to, draw_tick);
+    return interpolation_->at(from, to, controls_[snapshots_.size() > 1 ? 1 : 0], draw_tick);
 }
 
 void ArenaMirror::add_balls(View& view, double draw_tick) {

@@ -31,7 +31,9 @@ class ArenaMirror {
 
     void apply(const replication::ServerMessage& message);
     // Whole, and newer than every one before it.
-    void add(std::shared_ptr<const replication::Snapshot> snapshot);
+    // `controls`: what is known of what people did since that one.
+    void add(std::shared_ptr<const replication::Snapshot> snapshot,
+             std::vector<replication::ControlEvent> controls = {});
 
     bool has_snapshot() const { return !snapshots_.empty(); }
     replication::Tick newest_tick() const;
@@ -52,6 +54,7 @@ class ArenaMirror {
     std::vector<BallPose> poses_at(double draw_tick);
     void add_balls(View& view, double draw_tick);
     void add_hits(View& view, double draw_tick);
+    void drop_oldest();
 
     Flights flights_;
     std::optional<FlightInterpolation> interpolation_;  // on the level that is shown
@@ -66,6 +69,7 @@ class ArenaMirror {
     replication::Wallet wallet_;
     std::optional<replication::CollisionReport> last_own_hit_;
     std::deque<std::shared_ptr<const replication::Snapshot>> snapshots_;  // ascending by tick
+    std::deque<std::vector<replication::ControlEvent>> controls_;         // that led to each
     std::deque<replication::HitState> pending_hits_;
     std::uint64_t hits_dropped_count_ = 0;
 };

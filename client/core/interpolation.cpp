@@ -77,10 +77,11 @@ const replication::FlightPaths& FlightInterpolation::paths_beyond(const Snapshot
     return paths_;
 }
 
-const replication::FlightPaths& FlightInterpolation::paths_between(const Snapshot& from,
-                                                                   const Snapshot& to) {
+const replication::FlightPaths& FlightInterpolation::paths_between(
+    const Snapshot& from, const Snapshot& to, std::span<const replication::ControlEvent> controls) {
     if (!has_paths_ || from_tick_ != from.tick || to_tick_ != to.tick) {
-        paths_ = replication::paths_between(course_, from.balls, from.tick, to.balls, to.tick, {});
+        paths_ =
+            replication::paths_between(course_, from.balls, from.tick, to.balls, to.tick, controls);
         from_tick_ = from.tick;
         to_tick_ = to.tick;
         has_paths_ = true;
@@ -89,13 +90,15 @@ const replication::FlightPaths& FlightInterpolation::paths_between(const Snapsho
 }
 
 std::vector<BallPose> FlightInterpolation::at(const Snapshot& from, const Snapshot& to,
+                                              std::span<const replication::ControlEvent> controls,
                                               double draw_tick) {
     assert(from.tick <= to.tick);
     const bool beyond = draw_tick >= to.tick;
     const Snapshot& start = beyond ? to : from;
     if (draw_tick <= start.tick) return all_coasting(start, 0.0);
     const double since_s = (draw_tick - start.tick) * course_.tick_s;
-    const replication::FlightPaths& paths = beyond ? paths_beyond(to) : paths_between(from, to);
+    const replication::FlightPaths& paths =
+        beyond ? paths_beyond(to) : paths_between(from, to, controls);
     const double shown_s = beyond ? std::min(since_s, kMaxExtrapolationS) : since_s;
     std::vector<BallPose> poses;
     poses.reserve(start.balls.size());

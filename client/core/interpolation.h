@@ -39,13 +39,15 @@ class FlightInterpolation {
     // What is known of the arena besides snapshots; must be valid.
     explicit FlightInterpolation(replication::Course course) : course_(std::move(course)) {}
 
+    // `controls`: what is known of what people did from `from` to `to`.
     std::vector<BallPose> at(const replication::Snapshot& from, const replication::Snapshot& to,
-                             double draw_tick);
+                             std::span<const replication::ControlEvent> controls, double draw_tick);
 
   private:
     const replication::FlightPaths& paths_beyond(const replication::Snapshot& newest);
-    const replication::FlightPaths& paths_between(const replication::Snapshot& from,
-                                                  const replication::Snapshot& to);
+    const replication::FlightPaths& paths_between(
+        const replication::Snapshot& from, const replication::Snapshot& to,
+        std::span<const replication::ControlEvent> controls);
 
     replication::Course course_;
     replication::FlightPaths paths_;

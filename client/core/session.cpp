@@ -62,7 +62,7 @@ struct Session::Impl {
     void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
     void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
     void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
-    void take_snapshot(std::shared_ptr<const Snapshot> snapshot, std::uint32_t acked_input);
+    void take_snapshot(replication::SnapshotReceiver::Received received, std::uint32_t acked_input);
     void predict(View& view, double now_s);
     void count_missed_before(replication::Tick tick);
     void welcome(const replication::Welcome& message, double now_s);
@@ -177,9 +177,9 @@ void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes,
         heard_tick = tick;
     }
     const auto whole_ticks = std::max(1LL, std::llround(ticks_per_snapshot));
-    auto snapshot = receiver.receive(*packet, static_cast<replication::Tick>(whole_ticks),
+    auto received = receiver.receive(*packet, static_cast<replication::Tick>(whole_ticks),
                                      [this](int level) { return arena.course_of(level); });
-    if (snapshot) take_snapshot(std::move(snapshot), packet->acked_input_sequence);
+    if (received.snapshot) take_snapshot(std::move(received), packet->acked_input_sequence);
 }
 
 void Session::Impl::take_input_timing(const replication::SnapshotPacket& packet, double now_s) {
@@ -202,14 +202,15 @@ void Session::Impl::count_missed_before(replication::Tick tick) {
     recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
 }
 
-void Session::Impl::take_snapshot(std::shared_ptr<const Snapshot> snapshot,
+void Session::Impl::take_snapshot(replication::SnapshotReceiver::Received received,
                                   std::uint32_t acked_input) {
-    count_missed_before(snapshot->tick);
+    const Snapshot& snapshot = *received.snapshot;
+    count_missed_before(snapshot.tick);
     ++stats.snapshots_received;
-    clock.observe(double(snapshot->tick) / arena.tick_rate_hz(), arrival_s);
-    const auto course = config.predicts_own_ball ? arena.course_of(snapshot->level) : std::nullopt;
-    if (course) prediction.rebase(*course, *snapshot, arena.own_player_id(), acked_input);
-    arena.add(std::move(snapshot));
+    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), arrival_s);
+    const auto course = config.predicts_own_ball ? arena.course_of(snapshot.level) : std::nullopt;
+    if (course) prediction.rebase(*course, snapshot, arena.own_player_id(), acked_input);
+    arena.add(std::move(received.snapshot), std::move(received.controls));
 }
 
 void Session::Impl::send_due_inputs(double now_s) {

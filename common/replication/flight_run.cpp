@@ -13,7 +13,7 @@ class FlightRecorder {
   public:
     FlightRecorder(const Course& course, std::span<const BallState> balls, Tick ticks)
         : course_(course),
-          world_(scene_of(course, balls)),
+          world_(scene_of(course, balls), course.solver),
           ids_(world_.ids().begin(), world_.ids().end()),
           held_(balls.begin(), balls.end()) {
         assert(!course.scene.periodic);

@@ -46,9 +46,9 @@ physics::BodyDef body_of(const Course& course, const BallState& ball) {
     physics::BodyDef body;
     body.radius_m = fitting_radius_m(ball, course.scene);
     body.mass_kg = std::max(kLeastMassKg, ball.mass * kMassStepKg);
-    body.position_m = place_inside({dequantise(ball.x, lattice.position_step_m),
-                                    dequantise(ball.y, lattice.position_step_m)},
-                                   body.radius_m, course.scene);
+    body.position_m = place_inside(
+        {dequantise(ball.x, lattice.position_step_m), dequantise(ball.y, lattice.position_step_m)},
+        body.radius_m, course.scene);
     body.velocity_mps = physics::Vec2d{dequantise(ball.vx, lattice.velocity_step_mps),
                                        dequantise(ball.vy, lattice.velocity_step_mps)}
                             .cwiseMin(physics::kMaxSpeedMps)

@@ -56,6 +56,7 @@ class LatticeWorld {
 
     std::optional<std::size_t> slot_of(std::uint16_t id) const;
     std::uint16_t id_at(std::size_t slot) const { return balls_[slot].id; }
+    // Off the lattice, as it is between snaps; the index of a body is the slot of its ball.
     const physics::World<double>& world() const { return world_; }
     // Of a ball that is there.
     physics::BodyView<double> body(std::uint16_t id) const;
@@ -79,22 +80,14 @@ class LatticeWorld {
     std::span<const physics::Contact<double>> contacts() const { return world_.contacts(); }
     std::span<const physics::Fall<double>> falls() const { return world_.falls(); }
     double kinetic_energy_j() const { return world_.kinetic_energy_j(); }
-    // Off the lattice, as it is between snaps; the index of a body is that of its ball.
-    const physics::World<double>& world() const { return world_; }
 
   private:
-// Of a level of the game: balls on a platform that answer as their handling says.
-Course course_of(const physics::Platform& platform, const physics::SolverChoice& solver);
-HandlingState quantised(const game::Handling& handling);
-game::Handling handling_of(const BallState& ball);
-
-// The course with these balls on it, whatever they hold: inside the walls, if there are any, and
-// made valid bodies.
-physics::Scene scene_of(const Course& course, std::span<const BallState> balls);
-
-class LatticeWorld {
-  public:
-    // `balls` ascends by id; whatever they hold, each has a place.
+    struct Entry {
+        std::uint16_t id = 0;
+        physics::BodyId body;
+    };
+    std::vector<Entry>::const_iterator find(std::uint16_t id) const;
+    void list_all();
 
     Course course_;
     std::vector<BallState> balls_;  // by slot; but for their motion

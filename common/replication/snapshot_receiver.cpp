@@ -13,12 +13,11 @@ Tick tick_of(const SnapshotPacket& packet) {
     return header ? header->tick : 0;
 }
 
-std::shared_ptr<const Snapshot> SnapshotReceiver::receive(const SnapshotPacket& packet,
-                                                          Tick snapshot_ticks,
-                                                          const CourseOf& course_of) {
-    return packet.kind == SnapshotPacket::Kind::kStates
-               ? receive_states(packet.part)
-               : receive_events(packet.part, snapshot_ticks, course_of);
+SnapshotReceiver::Received SnapshotReceiver::receive(const SnapshotPacket& packet,
+                                                     Tick snapshot_ticks,
+                                                     const CourseOf& course_of) {
+    if (packet.kind == SnapshotPacket::Kind::kStates) return {receive_states(packet.part), {}};
+    return receive_events(packet.part, snapshot_ticks, course_of);
 }
 
 bool SnapshotReceiver::is_news(Tick tick) {
@@ -45,36 +44,40 @@ std::shared_ptr<const Snapshot> SnapshotReceiver::receive_states(
     return keep(std::move(*whole));
 }
 
-std::shared_ptr<const Snapshot> SnapshotReceiver::receive_events(std::span<const std::uint8_t> part,
-                                                                 Tick snapshot_ticks,
-                                                                 const CourseOf& course_of) {
+SnapshotReceiver::Received SnapshotReceiver::receive_events(std::span<const std::uint8_t> part,
+                                                            Tick snapshot_ticks,
+                                                            const CourseOf& course_of) {
     const auto header = peek_control_part(part);
     if (!header) {
         ++counts_.malformed;
-        return nullptr;
+        return {};
     }
-    if (!is_news(header->tick)) return nullptr;
+    if (!is_news(header->tick)) return {};
     const auto baseline = history_.find(header->baseline_tick);
-    if (!baseline) return nullptr;
-    const auto told = decode_events(*baseline, part);
+    if (!baseline) return {};
+    auto told = decode_events(*baseline, part);
     if (!told) {
         ++counts_.malformed;
-        return nullptr;
+        return {};
     }
     // What was replayed up to a newer snapshot than the baseline need not be replayed again.
     const auto newest = history_.newest();
     if (!replay_ || replay_->tick() != newest->tick) {
         const auto course = course_of(newest->level);
-        if (!course) return nullptr;
+        if (!course) return {};
         replay_.emplace(*course, *newest, snapshot_ticks);
     }
     replay_->run_to(told->tick, told->events);
     Snapshot outcome = replay_->snapshot();
-    if (outcome_digest_of(outcome) == told->outcome_digest) return keep(std::move(outcome));
+    if (outcome_digest_of(outcome) == told->outcome_digest) {
+        std::vector<ControlEvent>& controls = told->events.controls;
+        std::erase_if(controls, [&](const auto& event) { return event.tick <= newest->tick; });
+        return {keep(std::move(outcome)), std::move(controls)};
+    }
     ++counts_.unlike;
     replay_.reset();
     history_.clear();
-    return nullptr;
+    return {};
 }
 
 std::shared_ptr<const Snapshot> SnapshotReceiver::keep(Snapshot&& snapshot) {

@@ -33,9 +33,13 @@ class SnapshotReceiver {
     // What is known of a level; empty before that has been said.
     using CourseOf = std::function<std::optional<Course>(int level)>;
 
-    // A whole snapshot, newer than every one before, if this packet completes one; else null.
-    std::shared_ptr<const Snapshot> receive(const SnapshotPacket& packet, Tick snapshot_ticks,
-                                            const CourseOf& course_of);
+    struct Received {
+        std::shared_ptr<const Snapshot> snapshot;  // null: nothing new
+        // What people did since the one before, as far as it was told.
+        std::vector<ControlEvent> controls;
+    };
+    // A whole snapshot, newer than every one before, if this packet completes one.
+    Received receive(const SnapshotPacket& packet, Tick snapshot_ticks, const CourseOf& course_of);
 
     // What to acknowledge: the newest whole snapshot that is held; 0: none.
     Tick held_tick() const;
@@ -44,8 +48,8 @@ class SnapshotReceiver {
   private:
     bool is_news(Tick tick);
     std::shared_ptr<const Snapshot> receive_states(std::span<const std::uint8_t> part);
-    std::shared_ptr<const Snapshot> receive_events(std::span<const std::uint8_t> part,
-                                                   Tick snapshot_ticks, const CourseOf& course_of);
+    Received receive_events(std::span<const std::uint8_t> part, Tick snapshot_ticks,
+                            const CourseOf& course_of);
     std::shared_ptr<const Snapshot> keep(Snapshot&& snapshot);
 
     SnapshotAssembler assembler_;

@@ -91,8 +91,8 @@ TEST(ArenaMirror, keeps_the_platform_of_the_level_that_is_drawn) {
 std::shared_ptr<Snapshot> two_balls(replication::Tick tick, double x_m, double vx_mps) {
     auto result = snapshot(tick, -x_m);
     result->balls[0].vx = replication::quantise(vx_mps, replication::kVelocityStepMps);
-    result->balls[0].radius = 128;
-    result->balls[0].mass = 256;
+    result->balls[0].radius = 2048;
+    result->balls[0].mass = 65536;
     result->balls.push_back(result->balls[0]);
     replication::BallState& other = result->balls[1];
     other.id = 5;

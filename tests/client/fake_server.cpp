@@ -90,8 +90,8 @@ void FakeServer::send_snapshot() {
     ball.id = 3;
     ball.kind = static_cast<std::uint8_t>(replication::BallKind::kPlayer);
     ball.player_id = welcome.player_id;
-    ball.radius = 128;
-    ball.mass = 256;
+    ball.radius = 2048;
+    ball.mass = 65536;
     ball.x = replication::quantise(at_m.x(), replication::kPositionStepM);
     ball.y = replication::quantise(at_m.y(), replication::kPositionStepM);
     ball.vx = replication::quantise(0.5, replication::kVelocityStepMps);

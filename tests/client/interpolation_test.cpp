@@ -125,8 +125,8 @@ TEST(Interpolation, stays_sorted_by_id_whoever_comes_and_goes) {
 
 BallState heavy_ball(std::uint16_t id, double x_m, double y_m, double vx_mps, double vy_mps) {
     BallState state = ball(id, x_m, y_m, vx_mps, vy_mps);
-    state.radius = 128;
-    state.mass = 256;
+    state.radius = 2048;
+    state.mass = 65536;
     return state;
 }
 
@@ -135,7 +135,7 @@ TEST(FlightInterpolation, draws_a_hit_between_snapshots_where_it_happened) {
     const Snapshot to = at(13, {heavy_ball(1, -0.75, 0, -8, 0), heavy_ball(2, 0.75, 0, 8, 0)});
     FlightInterpolation flights(replication::Course{});
     const double hit_tick = 10 + 0.3 / 16.0 * kRateHz;
-    const auto poses = flights.at(from, to, hit_tick);
+    const auto poses = flights.at(from, to, {}, hit_tick);
     ASSERT_EQ(poses.size(), 2U);
     EXPECT_EQ(poses[0].state, &from.balls[0]);
     EXPECT_NEAR(poses[0].position_m.x(), -0.5, replication::kPositionStepM);
@@ -150,7 +150,7 @@ TEST(FlightInterpolation, goes_from_snapshot_to_snapshot_and_on_beyond_the_newes
     const Snapshot third = at(14, {heavy_ball(1, 0.4, 0, 6, 0), heavy_ball(2, 3, 3, 0, 0)});
     FlightInterpolation flights(replication::Course{});
     const auto x_at = [&](const Snapshot& from, const Snapshot& to, double tick) {
-        return flights.at(from, to, tick).front().position_m.x();
+        return flights.at(from, to, {}, tick).front().position_m.x();
     };
     for (double tick = 10.0; tick <= 26.0; tick += 0.25) {
         const Snapshot& from = tick < 12.0 ? first : tick < 14.0 ? second : third;
@@ -159,8 +159,8 @@ TEST(FlightInterpolation, goes_from_snapshot_to_snapshot_and_on_beyond_the_newes
         EXPECT_NEAR(x_at(from, to, tick), (shown - 10.0) * 0.1, replication::kPositionStepM);
     }
     EXPECT_EQ(x_at(first, second, 9.0), 0.0);
-    EXPECT_EQ(flights.at(first, second, 11.9).size(), 1U);
-    EXPECT_EQ(flights.at(first, second, 12.0).size(), 2U);
+    EXPECT_EQ(flights.at(first, second, {}, 11.9).size(), 1U);
+    EXPECT_EQ(flights.at(first, second, {}, 12.0).size(), 2U);
 }
 
 }  // namespace

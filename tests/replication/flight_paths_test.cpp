@@ -24,7 +24,7 @@ constexpr double kSpanS = kApart / 60.0;
 
 Course open_course() {
     Course course;
-    course.lattice = {1.0 / 1024.0, 1.0 / 256.0};
+    course.lattice = {kPositionStepM, kVelocityStepMps};
     return course;
 }
 
@@ -43,8 +43,8 @@ BallState flying_ball(std::uint16_t id, Vec2d place_m, Vec2d velocity_mps) {
     ball.y = quantise(place_m.y(), kPositionStepM);
     ball.vx = quantise(velocity_mps.x(), kVelocityStepMps);
     ball.vy = quantise(velocity_mps.y(), kVelocityStepMps);
-    ball.radius = 128;
-    ball.mass = 256;
+    ball.radius = 2048;
+    ball.mass = 65536;
     return ball;
 }
 
@@ -132,14 +132,14 @@ TEST(FlightPaths, are_the_servers_to_rounding_where_nothing_is_unknown) {
         Course course = walled_course();
         course.control_of = thrust_of;
         const std::vector<BallState> from = crowd_in(course, seed);
-        const std::vector<ControlEvent> events = {{91, from[4].id, 0, 127, false},
-                                                  {90, from[7].id, -127, 0, false},
-                                                  {92, 1, 127, 0, true}};
+        const std::vector<ControlEvent> events = {{92, from[4].id, 0, 127, false},
+                                                  {91, from[7].id, -127, 0, false},
+                                                  {93, 1, 127, 0, true}};
         LatticeWorld server(course, from);
         std::vector<std::vector<Vec2d>> ticks_m;
         for (Tick tick = 90; tick < 90 + kApart; ++tick) {
             for (const ControlEvent& event : events) {
-                if (event.tick != tick || event.ball == 1) continue;
+                if (event.tick != tick + 1 || event.ball == 1) continue;
                 BallState held;
                 held.thrust_x = event.thrust_x;
                 held.thrust_y = event.thrust_y;

@@ -99,7 +99,7 @@ class FakeClient {
         const auto packet = replication::decode_snapshot_packet(event.bytes);
         ASSERT_TRUE(packet);
         acked_input_sequence = packet->acked_input_sequence;
-        const auto whole =
+        const auto [whole, controls] =
             receiver_.receive(*packet, 2, [this](int level) { return course_of(level); });
         if (!whole) return;
         if (packet->kind == replication::SnapshotPacket::Kind::kEvents) ++replayed;
