@@ -67,6 +67,9 @@ class Crowd {
     bool pinned_ = false;
     std::ofstream hits_;
     std::string hits_path_;
+    // The bots of an arena see the same; one of them simulates it.
+    std::shared_ptr<replication::SharedReplay> replays_ =
+        std::make_shared<replication::SharedReplay>();
     std::vector<Member> members_;
     std::vector<std::string> problems_;
 };

@@ -54,6 +54,7 @@ struct Session::Impl {
           transport(session_transport),
           dialer({config.key, config.server, config.protocol_version, config.pinned_server_key},
                  transport),
+          receiver(config.replays ? config.replays : std::make_shared<replication::SharedReplay>()),
           arena(config.follows_hits ? Flights::kWithHits : Flights::kStraight) {}
 
     void look(double now_s);

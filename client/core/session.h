@@ -15,6 +15,7 @@
 #include "common/net/connection.h"
 #include "common/net/transport.h"
 #include "common/replication/messages.h"
+#include "common/replication/shared_replay.h"
 
 namespace fts::client {
 
@@ -28,6 +29,8 @@ struct SessionConfig {
     // Views have the kink of a hit between two snapshots where it happened, for a few microseconds
     // a ball and snapshot; else straight lines.
     bool follows_hits = true;
+    // With whom replays are shared: sessions of this process with the same server. Null: nobody.
+    std::shared_ptr<replication::SharedReplay> replays;
     // Runs the own ball ahead of the server's snapshots (own_ball_prediction.h).
     bool predicts_own_ball = false;
 };

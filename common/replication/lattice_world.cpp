@@ -29,6 +29,23 @@ std::int32_t step_inside(double value_m, double step_m, double radius_m, double 
     return quantise(low > high ? steps : std::clamp(steps, low, high), 1.0);
 }
 
+// Rounding may have put a centre just beyond the edge; it falls in the next step then, as it would
+// have. Whatever else is out there is brought back, too.
+physics::Vec2d on_platform(const physics::Platform& platform, const physics::Vec2d& place_m) {
+    if (physics::distance_to_edge_m(platform, place_m) >= 0.0) return place_m;
+    constexpr double kLeastInsetM = 1e-6, kMostInsetM = 1e3;
+    const physics::Vec2d edge_m = physics::nearest_edge_point_m(platform, place_m);
+    const physics::Vec2d inward = edge_m - place_m;
+    const double length_m = inward.norm();
+    for (double inset_m = kLeastInsetM; length_m > 0.0 && inset_m < kMostInsetM; inset_m *= 4.0) {
+        const physics::Vec2d inside_m = edge_m + inward * (inset_m / length_m);
+        if (physics::distance_to_edge_m(platform, inside_m) >= 0.0) return inside_m;
+    }
+    const auto* const ring = std::get_if<physics::Ring>(&platform);
+    if (ring == nullptr) return physics::Vec2d::Zero();
+    return {0.5 * (ring->inner_radius_m + ring->outer_radius_m), 0.0};
+}
+
 physics::Vec2d place_inside(physics::Vec2d place_m, double radius_m, const physics::Scene& scene) {
     place_m = place_m.cwiseMin(physics::kMaxCoordinateM).cwiseMax(-physics::kMaxCoordinateM);
     if (!scene.walls) return place_m;
@@ -54,6 +71,21 @@ physics::BodyDef body_of(const Course& course, const BallState& ball) {
                             .cwiseMin(physics::kMaxSpeedMps)
                             .cwiseMax(-physics::kMaxSpeedMps);
     return body;
+}
+
+physics::BodyDef body_on_course(const Course& course, const BallState& ball) {
+    physics::BodyDef body = body_of(course, ball);
+    const auto& platform = course.scene.platform;
+    if (platform) body.position_m = on_platform(*platform, body.position_m);
+    return body;
+}
+
+physics::Scene scene_on_course(const Course& course, std::span<const BallState> balls) {
+    physics::Scene scene = course.scene;
+    scene.bodies.clear();
+    scene.bodies.reserve(balls.size());
+    for (const BallState& ball : balls) scene.bodies.push_back(body_on_course(course, ball));
+    return scene;
 }
 
 game::InputCommand held_by(const BallState& ball) {
@@ -101,7 +133,7 @@ physics::Scene scene_of(const Course& course, std::span<const BallState> balls) 
 LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> balls)
     : course_(course),
       balls_(balls.begin(), balls.end()),
-      world_(scene_of(course, balls), course.solver) {
+      world_(scene_on_course(course, balls), course.solver) {
     assert(!course_.scene.periodic);
     list_all();
 }
@@ -159,7 +191,7 @@ bool LatticeWorld::put(const BallState& ball) {
         if (course_.control_of) world_.set_control(place->body, course_.control_of(held));
         return true;
     }
-    const auto body = world_.add(body_of(course_, ball));
+    const auto body = world_.add(body_on_course(course_, ball));
     if (!body) return false;
     if (balls_.size() <= body->index) balls_.resize(body->index + 1);
     balls_[body->index] = ball;
@@ -192,7 +224,7 @@ physics::StepReport LatticeWorld::advance(double span_s) {
 
 void LatticeWorld::snap() {
     balls_ = balls();
-    world_ = physics::World<double>(scene_of(course_, balls_), course_.solver);
+    world_ = physics::World<double>(scene_on_course(course_, balls_), course_.solver);
     list_all();
 }
 

@@ -45,13 +45,14 @@ Course course_of(const physics::Platform& platform, const physics::SolverChoice&
 HandlingState quantised(const game::Handling& handling);
 game::Handling handling_of(const BallState& ball);
 
-// The course with these balls on it, whatever they hold: inside the walls, if there are any, and
-// made valid bodies.
+// The course with these balls, whatever they hold: inside the walls, if there are any, and made
+// valid bodies; they may be off the platform.
 physics::Scene scene_of(const Course& course, std::span<const BallState> balls);
 
 class LatticeWorld {
   public:
-    // `balls` ascends by id; whatever they hold, each has a place.
+    // `balls` ascends by id; whatever they hold, each has a place inside the walls and on the
+    // platform.
     LatticeWorld(const Course& course, std::span<const BallState> balls);
 
     std::optional<std::size_t> slot_of(std::uint16_t id) const;

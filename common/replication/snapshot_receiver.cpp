@@ -40,8 +40,11 @@ std::shared_ptr<const Snapshot> SnapshotReceiver::receive_states(
     if (!held && header->baseline_tick != 0) return nullptr;
     auto whole = assembler_.add(held ? *held : kNothing, part);
     if (!whole) return nullptr;
-    replay_.reset();
-    return keep(std::move(*whole));
+    if (!is_canonical(*whole)) {
+        ++counts_.malformed;
+        return nullptr;
+    }
+    return keep(std::make_shared<const Snapshot>(std::move(*whole)));
 }
 
 SnapshotReceiver::Received SnapshotReceiver::receive_events(std::span<const std::uint8_t> part,
@@ -62,35 +65,25 @@ SnapshotReceiver::Received SnapshotReceiver::receive_events(std::span<const std:
     }
     // What was replayed up to a newer snapshot than the baseline need not be replayed again.
     const auto newest = history_.newest();
-    if (!replay_ || replay_->tick() != newest->tick) {
-        const auto course = course_of(newest->level);
-        if (!course) return {};
-        replay_.emplace(*course, *newest, snapshot_ticks);
-    }
-    replay_->run_to(told->tick, told->events);
-    Snapshot outcome = replay_->snapshot();
-    if (outcome_digest_of(outcome) == told->outcome_digest) {
+    const SharedReplay::Result result =
+        replays_->replay(*newest, baseline->tick, *told, snapshot_ticks, course_of);
+    if (result.outcome == SharedReplay::Outcome::kMade) {
         std::vector<ControlEvent>& controls = told->events.controls;
         std::erase_if(controls, [&](const auto& event) { return event.tick <= newest->tick; });
-        return {keep(std::move(outcome)), std::move(controls)};
+        return {keep(result.snapshot), std::move(controls)};
     }
-    ++counts_.unlike;
-    replay_.reset();
-    history_.clear();
+    if (result.outcome == SharedReplay::Outcome::kUnlike) {
+        ++counts_.unlike;
+        history_.clear();
+    }
     return {};
 }
 
-std::shared_ptr<const Snapshot> SnapshotReceiver::keep(Snapshot&& snapshot) {
-    if (!is_canonical(snapshot)) {
-        ++counts_.malformed;
-        replay_.reset();
-        return nullptr;
-    }
-    newest_tick_ = snapshot.tick;
+std::shared_ptr<const Snapshot> SnapshotReceiver::keep(std::shared_ptr<const Snapshot> snapshot) {
+    newest_tick_ = snapshot->tick;
     any_ = true;
-    auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
-    history_.add(shared);
-    return shared;
+    history_.add(snapshot);
+    return snapshot;
 }
 
 Tick SnapshotReceiver::held_tick() const {

@@ -7,13 +7,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
-#include "common/replication/arena_replay.h"
 #include "common/replication/delta.h"
 #include "common/replication/messages.h"
+#include "common/replication/shared_replay.h"
 #include "common/replication/snapshot_history.h"
 
 namespace fts::replication {
@@ -30,8 +31,11 @@ class SnapshotReceiver {
         // nothing.
         std::uint64_t unlike = 0;
     };
-    // What is known of a level; empty before that has been said.
-    using CourseOf = std::function<std::optional<Course>(int level)>;
+    using CourseOf = SharedReplay::CourseOf;
+
+    explicit SnapshotReceiver(
+        std::shared_ptr<SharedReplay> replays = std::make_shared<SharedReplay>())
+        : replays_(std::move(replays)) {}
 
     struct Received {
         std::shared_ptr<const Snapshot> snapshot;  // null: nothing new
@@ -50,12 +54,12 @@ class SnapshotReceiver {
     std::shared_ptr<const Snapshot> receive_states(std::span<const std::uint8_t> part);
     Received receive_events(std::span<const std::uint8_t> part, Tick snapshot_ticks,
                             const CourseOf& course_of);
-    std::shared_ptr<const Snapshot> keep(Snapshot&& snapshot);
+    std::shared_ptr<const Snapshot> keep(std::shared_ptr<const Snapshot> snapshot);
 
     SnapshotAssembler assembler_;
     SnapshotHistory history_;
-    std::optional<ArenaReplay> replay_;  // of the newest snapshot
-    Tick newest_tick_ = 0;               // ever
+    std::shared_ptr<SharedReplay> replays_;
+    Tick newest_tick_ = 0;  // ever
     bool any_ = false;
     Counts counts_;
 };

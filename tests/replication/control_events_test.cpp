@@ -11,6 +11,8 @@
 #include "common/game/rules.h"
 #include "common/game/upgrades.h"
 #include "common/replication/arena_replay.h"
+#include "common/replication/delta.h"
+#include "common/replication/snapshot_receiver.h"
 #include "tests/replication/random_snapshots.h"
 
 namespace fts::replication {
@@ -247,6 +249,43 @@ TEST(ControlEvents, OfAQuietArenaAreNearlyNothing) {
     EXPECT_LE(encode_events(baseline, {}, outcome).size(), 12U);
 }
 
+// Such as rounding leaves at the edge, or somebody sends who means harm.
+TEST(LatticeWorld, BringsBallsBackThatAreOffThePlatform) {
+    const physics::Platform platforms[] = {physics::Disc{9.0}, physics::Rectangle{{7.0, 4.0}},
+                                           physics::Ring{2.5, 8.0}};
+    Rng rng(12);
+    for (const physics::Platform& platform : platforms) {
+        std::vector<BallState> balls;
+        for (std::uint16_t id = 0; id < 400; ++id) {
+            BallState ball = ball_at(rng, id);
+            const int reach = 1 << pick(rng, 0, 30);
+            ball.x = static_cast<std::int32_t>(pick(rng, -reach, reach));
+            ball.y = static_cast<std::int32_t>(pick(rng, -reach, reach));
+            balls.push_back(ball);
+        }
+        LatticeWorld world(course_of(platform, {}), balls);
+        EXPECT_EQ(world.balls().size(), balls.size());
+        for (const physics::BodyId id : world.world().ids()) {
+            ASSERT_GE(physics::distance_to_edge_m(platform, world.world().body(id).position_m),
+                      0.0);
+        }
+        for (int i = 0; i < 4; ++i) world.snap();
+    }
+}
+
+TEST(LatticeWorld, LetsABallFallThatWasRoundedOverTheEdge) {
+    Rng rng(1);
+    BallState ball = ball_at(rng, 1);
+    ball.x = quantise(9.0, kPositionStepM) + 1;
+    ball.y = 0;
+    ball.vx = quantise(1.0, kVelocityStepMps);
+    LatticeWorld world(disc_course(), std::vector{ball});
+    world.advance(game::kTickDurationS);
+    ASSERT_EQ(world.falls().size(), 1U);
+    EXPECT_EQ(world.id_at(world.falls().front().id.index), 1);
+    EXPECT_TRUE(world.balls().empty());
+}
+
 TEST(ArenaReplay, ShowsEveryTickAndItsHits) {
     const game::BallStats stats = game::stats_for({});
     Rng rng(4);
@@ -276,6 +315,78 @@ TEST(ArenaReplay, ShowsEveryTickAndItsHits) {
     ASSERT_EQ(shown.hits.size(), 1U);
     EXPECT_EQ(shown.hits.front().tick, tick_of_hit);
     EXPECT_EQ(shown.balls[0].vx, -start.balls[0].vx);
+}
+
+std::vector<SnapshotPacket> packets_for(const std::vector<Snapshot>& sent, Tick held,
+                                        const BusyArena& server) {
+    const Snapshot truth = server.snapshot();
+    const auto baseline =
+        std::ranges::find_if(sent, [&](const Snapshot& snapshot) { return snapshot.tick == held; });
+    std::vector<SnapshotPacket> packets;
+    if (baseline == sent.end() || held == 0) {
+        for (auto& part : encode_delta(Snapshot{}, truth, 600)) {
+            packets.push_back({.part = std::move(part)});
+        }
+        return packets;
+    }
+    packets.push_back({.kind = SnapshotPacket::Kind::kEvents,
+                       .part = encode_events(*baseline, server.since(baseline->tick), truth)});
+    return packets;
+}
+
+// Some alone, some sharing what they simulate; each loses packets of its own.
+TEST(SnapshotReceiver, HasTheServersSnapshotsWhateverIsLostAndWhoeverSharesTheWork) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE(seed);
+        Rng loss(seed + 100);
+        BusyArena server(seed);
+        const auto shared = std::make_shared<SharedReplay>();
+        std::vector<SnapshotReceiver> clients;
+        for (int i = 0; i < 2; ++i) clients.emplace_back();
+        for (int i = 0; i < 3; ++i) clients.emplace_back(shared);
+        const auto course = [](int) { return std::optional(disc_course()); };
+        std::vector<Snapshot> sent;
+        std::vector<int> received(clients.size());
+        for (int i = 0; i < 200; ++i) {
+            server.tick();
+            const Snapshot truth = server.snapshot();
+            if (truth.tick % kTicksASnapshot != 0) continue;
+            for (std::size_t k = 0; k < clients.size(); ++k) {
+                for (const auto& packet : packets_for(sent, clients[k].held_tick(), server)) {
+                    if (chance(loss, 20)) continue;
+                    const auto got = clients[k].receive(packet, kTicksASnapshot, course);
+                    if (!got.snapshot) continue;
+                    ASSERT_TRUE(alike(*got.snapshot, truth)) << "client " << k << " " << truth.tick;
+                    ++received[k];
+                }
+            }
+            sent.push_back(truth);
+        }
+        for (std::size_t k = 0; k < clients.size(); ++k) {
+            EXPECT_GT(received[k], 60);
+            EXPECT_EQ(clients[k].counts().unlike, 0U);
+            EXPECT_EQ(clients[k].counts().malformed, 0U);
+        }
+    }
+}
+
+TEST(SnapshotReceiver, ThatHasGoneAnotherWayAsksForStates) {
+    BusyArena server(8);
+    SnapshotReceiver client;
+    const auto course = [](int) { return std::optional(course_of(physics::Disc{4.0}, {})); };
+    std::vector<Snapshot> sent;
+    int whole = 0;
+    for (int i = 0; i < 60; ++i) {
+        server.tick();
+        const Snapshot truth = server.snapshot();
+        if (truth.tick % kTicksASnapshot != 0) continue;
+        for (const auto& packet : packets_for(sent, client.held_tick(), server)) {
+            if (client.receive(packet, kTicksASnapshot, course).snapshot) ++whole;
+        }
+        sent.push_back(truth);
+    }
+    EXPECT_GT(client.counts().unlike, 0U) << "on a smaller platform balls fall earlier";
+    EXPECT_GT(whole, 5) << "and yet it is shown what there is";
 }
 
 }  // namespace
