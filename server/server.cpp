@@ -103,8 +103,8 @@ void Server::play_one_tick() {
         deliver(*arena);
     }
     // Arenas take turns, so that the work of encoding spreads over the ticks.
-    for (std::size_t i = 0; i < arenas_.size(); ++i) {
-        if (arenas_[i]->match.snapshot_is_due()) publish_snapshot(*arenas_[i]);
+    for (const auto& arena : arenas_) {
+        if (arena->match.snapshot_is_due()) publish_snapshot(*arena);
     }
 }
 

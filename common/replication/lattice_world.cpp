@@ -38,7 +38,7 @@ physics::Vec2d on_platform(const physics::Platform& platform, const physics::Vec
     const physics::Vec2d inward = edge_m - place_m;
     const double length_m = inward.norm();
     for (double inset_m = kLeastInsetM; length_m > 0.0 && inset_m < kMostInsetM; inset_m *= 4.0) {
-        const physics::Vec2d inside_m = edge_m + inward * (inset_m / length_m);
+        physics::Vec2d inside_m = edge_m + inward * (inset_m / length_m);
         if (physics::distance_to_edge_m(platform, inside_m) >= 0.0) return inside_m;
     }
     const auto* const ring = std::get_if<physics::Ring>(&platform);
