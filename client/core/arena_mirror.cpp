@@ -26,15 +26,6 @@ std::vector<replication::PlayerInfo> with_printable_names(
     return players;
 }
 
-// A server's word; of a platform that makes no sense nothing is known.
-std::optional<replication::Course> course_on(const replication::LevelStarted& level,
-                                             int tick_rate_hz) {
-    replication::Course course = replication::course_of(level.platform, level.solver);
-    if (physics::validate(course.scene)) return std::nullopt;
-    course.tick_s = 1.0 / tick_rate_hz;
-    return course;
-}
-
 BallView ball_view(const BallPose& pose, std::uint16_t own_player_id,
                    const std::vector<replication::PlayerInfo>& players) {
     const replication::BallState& state = *pose.state;
@@ -101,16 +92,21 @@ replication::Tick ArenaMirror::newest_tick() const {
     return snapshots_.empty() ? 0 : snapshots_.back()->tick;
 }
 
-std::optional<replication::Course> ArenaMirror::course_of(int level) const {
-    const auto found = std::ranges::find(levels_, level, &replication::LevelStarted::number);
-    if (found == levels_.end()) return std::nullopt;
-    return course_on(*found, tick_rate_hz_);
-}
-
 const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
     const auto found = std::find_if(levels_.rbegin(), levels_.rend(),
                                     [&](const auto& level) { return level.number == number; });
     return found == levels_.rend() ? levels_.back() : *found;
+}
+
+// A server's word; of a platform that makes no sense nothing is known.
+std::optional<replication::Course> ArenaMirror::course_of(int number) const {
+    if (levels_.empty()) return std::nullopt;
+    const replication::LevelStarted& level = level_numbered(number);
+    if (level.number != number) return std::nullopt;
+    replication::Course course = replication::course_of(level.platform, level.solver);
+    if (physics::validate(course.scene)) return std::nullopt;
+    course.tick_s = 1.0 / tick_rate_hz_;
+    return course;
 }
 
 View ArenaMirror::view_at(double server_time_s) {
@@ -153,12 +149,12 @@ std::vector<BallPose> ArenaMirror::poses_at(double draw_tick) {
     if (flights_ == Flights::kStraight || levels_.empty()) {
         return interpolate(from, to, draw_tick, tick_rate_hz_);
     }
-    const replication::LevelStarted& level = level_numbered(from.level);
-    if (!interpolation_ || interpolated_level_ != level.number) {
-        const auto course = course_on(level, tick_rate_hz_);
+    const int level = level_numbered(from.level).number;
+    if (!interpolation_ || interpolated_level_ != level) {
+        const auto course = course_of(level);
         if (!course) return interpolate(from, to, draw_tick, tick_rate_hz_);
         interpolation_.emplace(*course);
-        interpolated_level_ = level.number;
+        interpolated_level_ = level;
     }
     return interpolation_->at(from, to, controls_[snapshots_.size() > 1 ? 1 : 0], draw_tick);
 }

@@ -40,7 +40,7 @@ class ArenaMirror {
     std::uint16_t own_player_id() const { return own_player_id_; }
     const game::Tiers& tiers() const { return wallet_.tiers; }
     // What both ends know of a level; empty before its message has come.
-    std::optional<replication::Course> course_of(int level) const;
+    std::optional<replication::Course> course_of(int number) const;
     int tick_rate_hz() const { return tick_rate_hz_; }
     // Hits that gave way before they were seen.
     std::uint64_t hits_dropped_count() const { return hits_dropped_count_; }

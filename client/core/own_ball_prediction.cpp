@@ -44,9 +44,7 @@ void OwnBallPrediction::rebase(const replication::Course& course,
         error_m_.setZero();
         return;
     }
-    const physics::Vec2d off_m = drawn->position_m - after_->position_m;
-    last_correction_m_ = off_m.norm();
-    error_m_ += off_m;
+    error_m_ += drawn->position_m - after_->position_m;
     if (error_m_.norm() > kMaxBlendM) error_m_.setZero();
 }
 

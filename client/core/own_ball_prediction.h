@@ -40,9 +40,6 @@ class OwnBallPrediction {
     // off. Moments do not go back from one call to the next.
     std::optional<Pose> pose(double now_s);
 
-    // By how much the last snapshot was off from what had been drawn.
-    double last_correction_m() const { return last_correction_m_; }
-
   private:
     struct Sent {
         std::uint32_t sequence = 0;
@@ -64,7 +61,6 @@ class OwnBallPrediction {
 
     physics::Vec2d error_m_ = physics::Vec2d::Zero();  // still to be blended in
     double blended_s_ = 0.0;
-    double last_correction_m_ = 0.0;
 };
 
 }  // namespace fts::client

@@ -159,44 +159,23 @@ bool is_known(const ArenaChange& change) {
 }  // namespace
 
 ArenaChange ArenaChange::ball_put(Tick tick, const BallState& ball) {
-    ArenaChange change;
-    change.kind = Kind::kBallPut;
-    change.tick = tick;
-    change.ball = ball;
-    return change;
+    return {.kind = Kind::kBallPut, .tick = tick, .ball = ball};
 }
 
 ArenaChange ArenaChange::ball_gone(Tick tick, std::uint16_t id) {
-    ArenaChange change;
-    change.kind = Kind::kBallGone;
-    change.tick = tick;
-    change.ball.id = id;
-    return change;
+    return {.kind = Kind::kBallGone, .tick = tick, .ball = {.id = id}};
 }
 
 ArenaChange ArenaChange::phase_begun(Tick tick, game::Phase phase, Tick phase_end_tick) {
-    ArenaChange change;
-    change.kind = Kind::kPhase;
-    change.tick = tick;
-    change.phase = phase;
-    change.phase_end_tick = phase_end_tick;
-    return change;
+    return {.kind = Kind::kPhase, .tick = tick, .phase = phase, .phase_end_tick = phase_end_tick};
 }
 
 ArenaChange ArenaChange::coin_put(Tick tick, const CoinState& coin) {
-    ArenaChange change;
-    change.kind = Kind::kCoinPut;
-    change.tick = tick;
-    change.coin = coin;
-    return change;
+    return {.kind = Kind::kCoinPut, .tick = tick, .coin = coin};
 }
 
 ArenaChange ArenaChange::coin_gone(Tick tick, std::uint16_t id) {
-    ArenaChange change;
-    change.kind = Kind::kCoinGone;
-    change.tick = tick;
-    change.coin.id = id;
-    return change;
+    return {.kind = Kind::kCoinGone, .tick = tick, .coin = {.id = id}};
 }
 
 bool is_canonical(const ArenaEvents& events) {

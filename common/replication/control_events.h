@@ -34,9 +34,9 @@ struct ArenaChange {
         kCoinGone,  // after the step
     };
     Kind kind = Kind::kBallPut;
-    Tick tick = 0;   // the step that leads to this tick
-    BallState ball;  // of kBallGone its id alone
-    CoinState coin;  // of kCoinGone its id alone
+    Tick tick = 0;        // the step that leads to this tick
+    BallState ball = {};  // of kBallGone its id alone
+    CoinState coin = {};  // of kCoinGone its id alone
     game::Phase phase = game::Phase::kWaiting;
     Tick phase_end_tick = 0;
 

@@ -80,12 +80,18 @@ physics::BodyDef body_on_course(const Course& course, const BallState& ball) {
     return body;
 }
 
-physics::Scene scene_on_course(const Course& course, std::span<const BallState> balls) {
+using BodyOf = physics::BodyDef(const Course& course, const BallState& ball);
+
+physics::Scene scene_with(const Course& course, std::span<const BallState> balls, BodyOf& body) {
     physics::Scene scene = course.scene;
     scene.bodies.clear();
     scene.bodies.reserve(balls.size());
-    for (const BallState& ball : balls) scene.bodies.push_back(body_on_course(course, ball));
+    for (const BallState& ball : balls) scene.bodies.push_back(body(course, ball));
     return scene;
+}
+
+physics::Scene scene_on_course(const Course& course, std::span<const BallState> balls) {
+    return scene_with(course, balls, body_on_course);
 }
 
 game::InputCommand held_by(const BallState& ball) {
@@ -123,11 +129,7 @@ Course course_of(const physics::Platform& platform, const physics::SolverChoice&
 }
 
 physics::Scene scene_of(const Course& course, std::span<const BallState> balls) {
-    physics::Scene scene = course.scene;
-    scene.bodies.clear();
-    scene.bodies.reserve(balls.size());
-    for (const BallState& ball : balls) scene.bodies.push_back(body_of(course, ball));
-    return scene;
+    return scene_with(course, balls, body_of);
 }
 
 LatticeWorld::LatticeWorld(const Course& course, std::span<const BallState> balls)
