@@ -58,6 +58,7 @@ template <typename Scalar>
 const FlightKernels<Scalar>& flight_kernels(SimdLevel level, bool equal_radii);
 
 // Those of one level, only where the processor has it.
+const FlightKernels<double>& flight_kernels_avx2(bool equal_radii);
 const FlightKernels<double>& flight_kernels_avx512(bool equal_radii);
 
 }  // namespace fts::physics
