@@ -47,6 +47,7 @@ Bot::Bot(const BotConfig& config, const Script& script, net::Transport& transpor
       rng_(config.seed),
       step_has_fired_(script.steps.size(), false) {
     assert(pilot_);
+    if (!config_.fields) config_.fields = std::make_shared<Fields>();
     tally_.name = config_.session.name;
     for (std::size_t i = 0; i < script_.steps.size(); ++i) {
         const Step& step = script_.steps[i];
@@ -57,13 +58,12 @@ Bot::Bot(const BotConfig& config, const Script& script, net::Transport& transpor
 }
 
 void Bot::start_session() {
-    if (session_) earlier_sessions_ = tally_.session;
-    client::SessionConfig session_config = config_.session;
-    session_config.follows_hits = false;  // nobody looks, and there may be hundreds
-    session_ = std::make_unique<client::Session>(session_config, transport_);
+    if (session_) earlier_sessions_ = sum_of(earlier_sessions_, session_->stats());
+    session_ = std::make_unique<client::Session>(config_.session, transport_);
     last_status_ = client::Status::kConnecting;
     last_phase_.reset();
-    last_view_ = {};
+    tiers_ = {};
+    decided_on_.reset();
     pending_purchase_.reset();
     is_ready_ = was_refused_ = false;
     tally_.ended_because.clear();
@@ -74,14 +74,13 @@ void Bot::update(double now_s) {
     if (is_retired_) return;
     note_status();
     note_notices();
-    if (session_->status() == client::Status::kPlaying && now_s >= next_decision_s_) {
-        next_decision_s_ = std::max(next_decision_s_ + game::kTickDurationS, now_s);
-        last_view_ = session_->view(now_s);
-        note_view(last_view_, now_s);
-        steer(last_view_);
-        go_shopping(last_view_);
+    if (session_->status() == client::Status::kPlaying && now_s >= next_frame_s_) {
+        next_frame_s_ = std::max(next_frame_s_ + game::kTickDurationS, now_s);
+        const client::Glance glance = session_->glance(now_s);
+        note_glance(glance, now_s);
+        steer(glance);
+        go_shopping();
     }
-    note_session_stats();
     for (const Moment moment : std::exchange(moments_, {})) happened(moment, now_s);
     run_due_steps(now_s);
 }
@@ -94,7 +93,12 @@ void Bot::retire(double now_s) {
 void Bot::leave(double now_s) {
     session_->leave(now_s);
     note_status();
-    note_session_stats();
+}
+
+Tally Bot::tally() const {
+    Tally tally = tally_;
+    tally.session = sum_of(earlier_sessions_, session_->stats());
+    return tally;
 }
 
 bool Bot::finished() const {
@@ -157,25 +161,23 @@ void Bot::note_purchase(const replication::PurchaseResult& result) {
     pending_purchase_.reset();
 }
 
-void Bot::note_view(const client::View& view, double now_s) {
-    if (view.link.rtt_s > 0.0) tally_.rtt.add(view.link.rtt_s);
-    tally_.delay_sum_s += view.link.interpolation_delay_s;
-    tally_.input_slack_sum_s += view.link.input_slack_s;
+void Bot::note_glance(const client::Glance& glance, double now_s) {
+    if (glance.link.rtt_s > 0.0) tally_.rtt.add(glance.link.rtt_s);
+    tally_.delay_sum_s += glance.link.interpolation_delay_s;
+    tally_.input_slack_sum_s += glance.link.input_slack_s;
     ++tally_.delay_samples;
-    tally_.coins = view.coins_held;
-    if (const replication::PlayerInfo* own = view.own_player()) {
-        tally_.knock_offs = own->knock_offs;
-        tally_.assists = own->assists;
-        tally_.falls = own->falls;
+    tally_.coins = glance.coins_held;
+    tiers_ = glance.tiers;
+    if (glance.own_player) {
+        tally_.knock_offs = glance.own_player->knock_offs;
+        tally_.assists = glance.own_player->assists;
+        tally_.falls = glance.own_player->falls;
     }
-    if (last_phase_ == view.phase) return;
-    last_phase_ = view.phase;
+    const game::Phase phase = glance.newest ? glance.newest->phase : game::Phase::kWaiting;
+    if (last_phase_ == phase) return;
+    last_phase_ = phase;
     is_ready_ = was_refused_ = false;
-    if (const auto moment = moment_of(view.phase)) happened(*moment, now_s);
-}
-
-void Bot::note_session_stats() {
-    tally_.session = sum_of(earlier_sessions_, session_->stats());
+    if (const auto moment = moment_of(phase)) happened(*moment, now_s);
 }
 
 void Bot::happened(Moment moment, double now_s) {
@@ -200,12 +202,13 @@ void Bot::run_due_steps(double now_s) {
 
 void Bot::act(const Action& action, double now_s) {
     if (const auto* purchase = std::get_if<Buy>(&action)) {
-        buy(purchase->stat, last_view_);
+        buy(purchase->stat);
     } else if (const auto* line = std::get_if<Chat>(&action)) {
         session_->chat(line->text);
     } else if (const auto* choice = std::get_if<UsePilot>(&action)) {
         pilot_ = make_pilot(choice->name);
         held_command_.reset();
+        decided_on_.reset();
     } else if (const auto* hold = std::get_if<Steer>(&action)) {
         held_command_ = hold->command;
     } else if (std::holds_alternative<Ready>(action)) {
@@ -218,33 +221,40 @@ void Bot::act(const Action& action, double now_s) {
     }
 }
 
-void Bot::buy(game::Stat stat, const client::View& view) {
-    const auto price = game::price_coins(view.tiers[static_cast<std::size_t>(stat)]);
+void Bot::buy(game::Stat stat) {
+    const auto price = game::price_coins(tiers_[static_cast<std::size_t>(stat)]);
     pending_purchase_ = {session_->buy(stat), price.value_or(0)};
 }
 
-void Bot::go_shopping(const client::View& view) {
-    if (view.phase != game::Phase::kShop || is_ready_ || pending_purchase_) return;
+void Bot::go_shopping() {
+    if (last_phase_ != game::Phase::kShop || is_ready_ || pending_purchase_) return;
     std::optional<game::Stat> wanted;
     if (script_.auto_shop && !was_refused_) {
-        wanted = next_purchase(pilot_->shopping_list(), view.tiers, view.coins_held);
+        wanted = next_purchase(pilot_->shopping_list(), tiers_, tally_.coins);
     }
     if (wanted) {
-        buy(*wanted, view);
+        buy(*wanted);
     } else if (script_.auto_ready) {
         session_->ready();
         is_ready_ = true;
     }
 }
 
-void Bot::steer(const client::View& view) {
+void Bot::steer(const client::Glance& glance) {
     if (held_command_) {
         session_->set_input(*held_command_);
-    } else if (view.phase == game::Phase::kPlaying && view.own_ball) {
-        session_->set_input(pilot_->decide(view, rng_));
-    } else {
-        session_->set_input({});
+        return;
     }
+    if (glance.newest == decided_on_) return;
+    decided_on_ = glance.newest;
+    const auto field = last_phase_ == game::Phase::kPlaying ? config_.fields->of(glance) : nullptr;
+    game::InputCommand command;
+    if (field) {
+        const double lag_s = glance.age_s + glance.link.rtt_s;
+        const Sight sight = sight_of(*field, glance.own_player_id, glance.tiers, lag_s);
+        if (sight.own != nullptr) command = pilot_->decide(sight, rng_);
+    }
+    session_->set_input(command);
 }
 
 }  // namespace fts::bot

@@ -1,6 +1,6 @@
-// Bot: one headless player. It plays through client/core exactly as a person's client does, decides
-// with a pilot, does what its script says, and counts what it sees. Time and transport are passed
-// in.
+// Bot: one headless player. It plays through client/core as a person's client does, only that it
+// goes by the newest snapshot instead of a picture: it decides with a pilot, does what its script
+// says, and counts what it sees. Time and transport are passed in.
 #pragma once
 
 #include <functional>
@@ -22,6 +22,8 @@ struct BotConfig {
     client::SessionConfig session;
     std::string pilot = "chaser";  // a name that make_pilot knows
     std::uint64_t seed = 1;
+    // Shared by the bots of one server; null: its own.
+    std::shared_ptr<Fields> fields;
 };
 
 class Bot {
@@ -40,7 +42,7 @@ class Bot {
 
     // Has ended, and no step of its script is left to bring it back.
     bool finished() const;
-    const Tally& tally() const { return tally_; }
+    Tally tally() const;
     // Of the newest session; once connected.
     std::optional<net::PublicKey> server_key() const { return session_->server_key(); }
 
@@ -48,16 +50,15 @@ class Bot {
     void leave(double now_s);
     void note_status();
     void note_notices();
-    void note_view(const client::View& view, double now_s);
-    void note_session_stats();
+    void note_glance(const client::Glance& glance, double now_s);
     void note_hit(const replication::CollisionReport& hit);
     void note_purchase(const replication::PurchaseResult& result);
     void happened(Moment moment, double now_s);
     void run_due_steps(double now_s);
     void act(const Action& action, double now_s);
-    void go_shopping(const client::View& view);
-    void steer(const client::View& view);
-    void buy(game::Stat stat, const client::View& view);
+    void go_shopping();
+    void steer(const client::Glance& glance);
+    void buy(game::Stat stat);
     void start_session();
 
     struct Scheduled {
@@ -79,15 +80,16 @@ class Bot {
     client::Status last_status_ = client::Status::kConnecting;
     std::optional<game::Phase> last_phase_;
     std::vector<Moment> moments_;  // since the last update
-    client::View last_view_;
-    double next_decision_s_ = 0.0;
+    game::Tiers tiers_{};
+    double next_frame_s_ = 0.0;
+    std::shared_ptr<const replication::Snapshot> decided_on_;
 
     bool is_retired_ = false;
     bool is_ready_ = false;
     bool was_refused_ = false;  // in this visit to the shop: asking again would not help
     std::optional<std::pair<std::uint64_t, int>> pending_purchase_;  // request id, price in coins
 
-    Tally tally_;
+    Tally tally_;  // but for `session`
     client::SessionStats earlier_sessions_;
 };
 

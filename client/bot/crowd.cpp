@@ -52,6 +52,7 @@ bool Crowd::add_bot(int number, const CrowdConfig& config, const net::Address& s
     bot.session.arena = config.arena;
     bot.session.protocol_version = config.protocol_version;
     bot.session.replays = replays_;
+    bot.fields = fields_;
     if (folder_) {
         const auto key = folder_->player_key(error, "bot-" + std::to_string(number) + ".key");
         if (!key) return false;

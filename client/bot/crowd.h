@@ -67,9 +67,10 @@ class Crowd {
     bool pinned_ = false;
     std::ofstream hits_;
     std::string hits_path_;
-    // The bots of an arena see the same; one of them simulates it.
+    // The bots of an arena see the same; one of them simulates it, and makes what all go by.
     std::shared_ptr<replication::SharedReplay> replays_ =
         std::make_shared<replication::SharedReplay>();
+    std::shared_ptr<Fields> fields_ = std::make_shared<Fields>();
     std::vector<Member> members_;
     std::vector<std::string> problems_;
 };

@@ -1,5 +1,5 @@
-// Pilot: what a bot does in each tick. It sees what a player sees (a View) and answers with what a
-// player sends (an InputCommand); it knows no connection and no clock. The same views and the same
+// Pilot: what a bot does next. It sees what a player is told (a Sight) and answers with what a
+// player sends (an InputCommand); it knows no connection and no clock. The same sights and the same
 // random numbers give the same commands.
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "client/core/view.h"
+#include "client/bot/field.h"
 #include "common/game/input.h"
 #include "common/game/upgrades.h"
 
@@ -19,8 +19,8 @@ using Rng = std::mt19937_64;  // the same sequence on every system
 class Pilot {
   public:
     virtual ~Pilot() = default;
-    // Once per tick while the view's phase is kPlaying and the own ball is on the platform.
-    virtual game::InputCommand decide(const client::View& view, Rng& rng) = 0;
+    // Once per snapshot while its phase is kPlaying and the own ball is on the platform.
+    virtual game::InputCommand decide(const Sight& sight, Rng& rng) = 0;
     // What it spends coins on, the most wanted first; nothing else is bought.
     virtual std::span<const game::Stat> shopping_list() const = 0;
 };

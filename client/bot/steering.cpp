@@ -48,23 +48,23 @@ Vec2d around_the_hole(const Helm& helm, const Vec2d& to_m) {
 
 }  // namespace
 
-std::optional<Helm> take_helm(const client::View& view) {
-    if (!view.own_ball) return std::nullopt;
-    const client::BallView& own = view.balls[*view.own_ball];
-    const game::BallStats stats = game::stats_for(view.tiers);
+std::optional<Helm> take_helm(const Sight& sight) {
+    if (sight.own == nullptr) return std::nullopt;
+    const FieldBall& own = *sight.own;
+    const game::BallStats stats = game::stats_for(sight.tiers);
     Helm helm;
-    helm.lag_s = view.link.interpolation_delay_s + view.link.rtt_s;
+    helm.lag_s = sight.lag_s;
     helm.position_m = own.position_m + own.velocity_mps * helm.lag_s;
     helm.velocity_mps = own.velocity_mps;
     helm.radius_m = own.radius_m;
     helm.mass_kg = own.mass_kg;
     helm.acceleration_mps2 = stats.thrust_n / stats.mass_kg;
     helm.top_speed_mps = stats.top_speed_mps;
-    helm.platform = view.level.platform;
+    helm.platform = sight.field.platform;
     return helm;
 }
 
-Vec2d ahead(const Helm& helm, const client::BallView& ball, double after_s) {
+Vec2d ahead(const Helm& helm, const FieldBall& ball, double after_s) {
     return ball.position_m + ball.velocity_mps * (helm.lag_s + after_s);
 }
 

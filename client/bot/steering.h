@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "client/core/view.h"
+#include "client/bot/field.h"
 #include "common/game/input.h"
 #include "common/game/upgrades.h"
 #include "common/physics/scene.h"
@@ -19,17 +19,17 @@ struct Helm {
     physics::Vec2d velocity_mps = physics::Vec2d::Zero();
     double radius_m = 0.0;
     double mass_kg = 0.0;
-    double lag_s = 0.0;              // from the moment that is seen to the one a command acts at
+    double lag_s = 0.0;              // as of the sight
     double acceleration_mps2 = 0.0;  // of full thrust
     double top_speed_mps = 0.0;
     physics::Platform platform;
 };
 
 // Empty while the own ball is not on the platform.
-std::optional<Helm> take_helm(const client::View& view);
+std::optional<Helm> take_helm(const Sight& sight);
 
 // Where a ball that is seen at `ball` will be `after_s` after the next command acts.
-physics::Vec2d ahead(const Helm& helm, const client::BallView& ball, double after_s);
+physics::Vec2d ahead(const Helm& helm, const FieldBall& ball, double after_s);
 
 // The point of the platform that is furthest from every edge and nearest to `near_m`.
 physics::Vec2d innermost_point_m(const physics::Platform& platform, const physics::Vec2d& near_m);

@@ -122,8 +122,7 @@ View ArenaMirror::view_at(double server_time_s) {
 
     view.server_time_s = server_time_s;
     const double draw_tick = server_time_s * tick_rate_hz_;
-    // Only the newest snapshot at or before this moment, and what comes after it, are still needed.
-    while (snapshots_.size() > 1 && snapshots_[1]->tick <= draw_tick) drop_oldest();
+    drop_before(draw_tick);
     const Snapshot& shown = *snapshots_.front();
     view.phase = shown.phase;
     if (shown.phase_end_tick != 0) {
@@ -138,6 +137,34 @@ View ArenaMirror::view_at(double server_time_s) {
     return view;
 }
 
+Glance ArenaMirror::glance_at(double server_time_s) {
+    Glance glance;
+    glance.tick_rate_hz = tick_rate_hz_;
+    glance.own_player_id = own_player_id_;
+    const auto own =
+        std::ranges::find(players_, own_player_id_, &replication::PlayerInfo::player_id);
+    if (own != players_.end()) glance.own_player = *own;
+    glance.coins_held = wallet_.coins;
+    glance.tiers = wallet_.tiers;
+    if (snapshots_.empty()) return glance;
+
+    const double draw_tick = server_time_s * tick_rate_hz_;
+    drop_before(draw_tick);
+    while (!pending_hits_.empty() && pending_hits_.front().tick <= draw_tick) {
+        pending_hits_.pop_front();
+    }
+    glance.newest = snapshots_.back();
+    const auto level =
+        std::ranges::find(levels_, int{glance.newest->level}, &replication::LevelStarted::number);
+    if (level != levels_.end()) glance.platform = level->platform;
+    return glance;
+}
+
+// Only the newest snapshot at or before a moment, and what comes after it, are still needed.
+void ArenaMirror::drop_before(double draw_tick) {
+    while (snapshots_.size() > 1 && snapshots_[1]->tick <= draw_tick) drop_oldest();
+}
+
 void ArenaMirror::drop_oldest() {
     snapshots_.pop_front();
     controls_.pop_front();
@@ -146,9 +173,7 @@ void ArenaMirror::drop_oldest() {
 std::vector<BallPose> ArenaMirror::poses_at(double draw_tick) {
     const Snapshot& from = *snapshots_.front();
     const Snapshot& to = snapshots_.size() > 1 ? *snapshots_[1] : from;
-    if (flights_ == Flights::kStraight || levels_.empty()) {
-        return interpolate(from, to, draw_tick, tick_rate_hz_);
-    }
+    if (levels_.empty()) return interpolate(from, to, draw_tick, tick_rate_hz_);
     const int level = level_numbered(from.level).number;
     if (!interpolation_ || interpolated_level_ != level) {
         const auto course = course_of(level);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/core/glance.h"
 #include "client/core/interpolation.h"
 #include "client/core/view.h"
 #include "common/game/rules.h"
@@ -22,13 +23,8 @@ inline constexpr std::size_t kMaxHeldSnapshots = 64;
 // Hits that wait for their moment to be drawn; the oldest give way.
 inline constexpr std::size_t kMaxPendingHits = 4096;
 
-// How balls go from one snapshot to the next (interpolation.h).
-enum class Flights : std::uint8_t { kStraight, kWithHits };
-
 class ArenaMirror {
   public:
-    explicit ArenaMirror(Flights flights = Flights::kWithHits) : flights_(flights) {}
-
     void apply(const replication::ServerMessage& message);
     // Whole, and newer than every one before it.
     // `controls`: what is known of what people did since that one.
@@ -48,15 +44,18 @@ class ArenaMirror {
     // Everything but the link. With no snapshot yet: no balls, and server_time_s 0. Moments must
     // not go back from one call to the next; hits up to this one are in it and in no later one.
     View view_at(double server_time_s);
+    // Everything but link and age, for who draws nothing at that moment: what is before it is over,
+    // as after `view_at`.
+    Glance glance_at(double server_time_s);
 
   private:
     const replication::LevelStarted& level_numbered(int number) const;
+    void drop_before(double draw_tick);
     std::vector<BallPose> poses_at(double draw_tick);
     void add_balls(View& view, double draw_tick);
     void add_hits(View& view, double draw_tick);
     void drop_oldest();
 
-    Flights flights_;
     std::optional<FlightInterpolation> interpolation_;  // on the level that is shown
     int interpolated_level_ = 0;
     int tick_rate_hz_ = game::kTickRateHz;

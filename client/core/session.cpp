@@ -54,8 +54,8 @@ struct Session::Impl {
           transport(session_transport),
           dialer({config.key, config.server, config.protocol_version, config.pinned_server_key},
                  transport),
-          receiver(config.replays ? config.replays : std::make_shared<replication::SharedReplay>()),
-          arena(config.follows_hits ? Flights::kWithHits : Flights::kStraight) {}
+          receiver(config.replays ? config.replays
+                                  : std::make_shared<replication::SharedReplay>()) {}
 
     void look(double now_s);
     void receive_datagrams(double now_s);
@@ -65,6 +65,7 @@ struct Session::Impl {
     void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
     void take_snapshot(replication::SnapshotReceiver::Received received, std::uint32_t acked_input);
     void predict(View& view, double now_s);
+    LinkView count_frame(double drawn_s, double now_s);
     void count_missed_before(replication::Tick tick);
     void welcome(const replication::Welcome& message, double now_s);
     void send_due_inputs(double now_s);
@@ -323,23 +324,41 @@ void Session::Impl::predict(View& view, double now_s) {
     own.braking = held_input.brake;
 }
 
+LinkView Session::Impl::count_frame(double drawn_s, double now_s) {
+    const bool drawing = clock.started();
+    const net::LinkStats net_link = dialer.stats();
+    LinkView link;
+    link.rtt_s = net_link.rtt_s;
+    link.loss = std::max(net_link.loss, recent_loss);
+    link.interpolation_delay_s = drawing ? std::max(0.0, clock.delay_s(now_s)) : 0.0;
+    link.input_slack_s = input_slack_s;
+    link.starved = drawing && drawn_s * arena.tick_rate_hz() > arena.newest_tick();
+    if (drawing && status == Status::kPlaying) {
+        ++stats.frames;
+        if (link.starved) ++stats.frames_starved;
+    }
+    return link;
+}
+
 View Session::view(double now_s) {
     Impl& self = *impl_;
-    const bool drawing = self.clock.started();
-    View view = self.arena.view_at(drawing ? self.clock.draw_time_s(now_s) : 0.0);
+    const double drawn_s = self.clock.started() ? self.clock.draw_time_s(now_s) : 0.0;
+    View view = self.arena.view_at(drawn_s);
     self.predict(view, now_s);
-    const net::LinkStats link = self.dialer.stats();
-    view.link.rtt_s = link.rtt_s;
-    view.link.loss = std::max(link.loss, self.recent_loss);
-    view.link.interpolation_delay_s = drawing ? std::max(0.0, self.clock.delay_s(now_s)) : 0.0;
-    view.link.input_slack_s = self.input_slack_s;
-    view.link.starved =
-        drawing && view.server_time_s * self.arena.tick_rate_hz() > self.arena.newest_tick();
-    if (drawing && self.status == Status::kPlaying) {
-        ++self.stats.frames;
-        if (view.link.starved) ++self.stats.frames_starved;
-    }
+    view.link = self.count_frame(drawn_s, now_s);
     return view;
+}
+
+Glance Session::glance(double now_s) {
+    Impl& self = *impl_;
+    const double drawn_s = self.clock.started() ? self.clock.draw_time_s(now_s) : 0.0;
+    Glance glance = self.arena.glance_at(drawn_s);
+    glance.link = self.count_frame(drawn_s, now_s);
+    if (glance.newest) {
+        const double newest_s = double(glance.newest->tick) / self.arena.tick_rate_hz();
+        glance.age_s = std::max(0.0, self.clock.estimate_s(now_s) - newest_s);
+    }
+    return glance;
 }
 
 std::vector<Notice> Session::drain_notices() {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/core/glance.h"
 #include "client/core/view.h"
 #include "common/game/input.h"
 #include "common/net/connection.h"
@@ -26,9 +27,6 @@ struct SessionConfig {
     int arena = -1;
     std::optional<net::PublicKey> pinned_server_key;
     std::uint16_t protocol_version = net::kProtocolVersion;
-    // Views have the kink of a hit between two snapshots where it happened, for a few microseconds
-    // a ball and snapshot; else straight lines.
-    bool follows_hits = true;
     // With whom replays are shared: sessions of this process with the same server. Null: nobody.
     std::shared_ptr<replication::SharedReplay> replays;
     // Runs the own ball ahead of the server's snapshots (own_ball_prediction.h).
@@ -102,7 +100,9 @@ class Session {
     // Known once connected; the caller pins it.
     std::optional<net::PublicKey> server_key() const;
 
+    // Either is a frame of the statistics.
     View view(double now_s);
+    Glance glance(double now_s);
     std::vector<Notice> drain_notices();
     SessionStats stats() const;
 

@@ -101,20 +101,20 @@ std::shared_ptr<Snapshot> two_balls(replication::Tick tick, double x_m, double v
     return result;
 }
 
-TEST(ArenaMirror, draws_hits_between_snapshots_on_the_level_that_is_shown_if_it_is_to) {
-    for (const Flights flights : {Flights::kWithHits, Flights::kStraight}) {
-        ArenaMirror mirror(flights);
+TEST(ArenaMirror, draws_hits_between_snapshots_once_it_knows_the_level_that_is_shown) {
+    for (const bool knows_the_level : {true, false}) {
+        ArenaMirror mirror;
         mirror.apply(welcome());
         replication::LevelStarted level;
         level.number = 1;
         level.platform = physics::Disc{10.0};
-        mirror.apply(level);
+        if (knows_the_level) mirror.apply(level);
         mirror.add(two_balls(60, 0.65, 8.0));
         mirror.add(two_balls(63, 0.75, -8.0));
         const View view = mirror.view_at((60.0 + 0.3 / 16.0 * 60.0) / 60.0);
         ASSERT_EQ(view.balls.size(), 2U);
         const bool touch = view.balls[1].position_m.x() - view.balls[0].position_m.x() < 1.01;
-        EXPECT_EQ(touch, flights == Flights::kWithHits);
+        EXPECT_EQ(touch, knows_the_level);
     }
 }
 
@@ -154,6 +154,44 @@ TEST(ArenaMirror, names_balls_from_the_roster_without_control_characters) {
     EXPECT_EQ(view.balls[0].name, "Ada?[31m");
     EXPECT_EQ(view.balls[0].colour, 3);
     ASSERT_NE(view.own_player(), nullptr);
+}
+
+TEST(ArenaMirror, gives_the_newest_snapshot_itself_with_its_level_and_the_own_player_at_a_glance) {
+    ArenaMirror mirror;
+    mirror.apply(welcome());
+    EXPECT_EQ(mirror.glance_at(0.0).newest, nullptr);
+    replication::PlayerInfo ada;
+    ada.player_id = 9;
+    ada.knock_offs = 4;
+    mirror.apply(replication::Roster{{replication::PlayerInfo{}, ada}});
+    mirror.add(snapshot(60));
+    EXPECT_FALSE(mirror.glance_at(1.0).platform);
+    replication::LevelStarted level;
+    level.number = 1;
+    level.platform = physics::Disc{7.0};
+    mirror.apply(level);
+    level.number = 2;
+    mirror.apply(level);
+    const auto newest = snapshot(62);
+    mirror.add(newest);
+    const Glance glance = mirror.glance_at(1.0);
+    EXPECT_EQ(glance.newest, newest);
+    ASSERT_TRUE(glance.platform);
+    EXPECT_EQ(std::get<physics::Disc>(*glance.platform).radius_m, 7.0);
+    ASSERT_TRUE(glance.own_player);
+    EXPECT_EQ(glance.own_player->knock_offs, 4);
+}
+
+TEST(ArenaMirror, is_done_at_a_glance_with_what_came_before_it) {
+    ArenaMirror mirror;
+    for (replication::Tick tick = 2; tick < 2 * kMaxPendingHits; tick += 2) {
+        auto next = snapshot(tick);
+        next->hits.assign(2, {tick, 1, 2, 0, 0, 1});
+        mirror.add(next);
+        mirror.glance_at(tick / 60.0);
+    }
+    EXPECT_EQ(mirror.hits_dropped_count(), 0U);
+    EXPECT_TRUE(mirror.view_at(2 * kMaxPendingHits / 60.0).hits.empty());
 }
 
 TEST(ArenaMirror, gives_up_the_oldest_hits_when_nobody_looks_and_counts_them) {

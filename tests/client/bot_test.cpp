@@ -165,6 +165,21 @@ TEST(Bot, leaves_the_shop_to_its_script_when_told_to) {
     EXPECT_TRUE(stage.received<replication::ReadyRequest>().empty());
 }
 
+TEST(Bot, steers_by_the_newest_snapshot_while_the_level_is_played) {
+    Stage stage("{}", "defender");
+    stage.run(1.0);
+    replication::LevelStarted level;
+    level.number = 1;
+    level.platform = physics::Disc{10.0};
+    stage.server.send(level);
+    stage.run(1.0);
+    const physics::Vec2d ball_m = FakeServer::ball_at_m(stage.server.now_tick * kTickS);
+    EXPECT_LT(game::thrust_of(stage.server.applied.back()).dot(ball_m), 0.0) << "inwards";
+    stage.server.phase = game::Phase::kCountdown;
+    stage.run(0.5);
+    EXPECT_EQ(stage.server.applied.back(), game::InputCommand{});
+}
+
 TEST(Bot, counts_levels_hits_and_chat) {
     Stage stage("{}");
     stage.run(1.0);

@@ -68,29 +68,31 @@ TEST(Pilots, stay_on_every_platform_when_nobody_pushes_them) {
     }
 }
 
-TEST(Pilots, answer_the_same_view_and_the_same_random_numbers_with_the_same_command) {
+TEST(Pilots, answer_the_same_sight_and_the_same_random_numbers_with_the_same_command) {
     for (const auto name : pilot_names()) {
         SCOPED_TRACE(name);
         const auto first = make_pilot(name), second = make_pilot(name);
         Rng one(5), other(5);
         PilotedWorld world(physics::Disc{10.0}, {at({1, 2}), at({-3, 4})}, 0);
         for (int i = 0; i < 120; ++i) {
-            const client::View view = world.view();
+            const Field field = world.field();
+            const Sight sight = world.sight(field);
             Rng before = one;
-            EXPECT_EQ(first->decide(view, before), second->decide(view, other));
+            EXPECT_EQ(first->decide(sight, before), second->decide(sight, other));
             one = before;
             world.tick(*first, one);
-            second->decide(view, other);
+            second->decide(sight, other);
         }
     }
 }
 
 TEST(Pilots, do_nothing_while_their_ball_is_off_the_platform) {
     Rng rng(1);
-    client::View view;
-    view.level.platform = physics::Disc{10.0};
+    Field field;
+    field.platform = physics::Disc{10.0};
     for (const auto name : pilot_names()) {
-        EXPECT_EQ(make_pilot(name)->decide(view, rng), game::InputCommand{}) << name;
+        EXPECT_EQ(make_pilot(name)->decide(sight_of(field, 1, {}, 0.0), rng), game::InputCommand{})
+            << name;
     }
 }
 
@@ -136,7 +138,7 @@ TEST(Chaser, goes_round_behind_a_ball_before_it_hits_it) {
         Vec2d struck_mps = Vec2d::Zero();
         while (world.seconds() < 10.0 && struck_mps.isZero()) {
             world.tick(*chaser, rng);
-            if (world.balls_left() > 0) struck_mps = world.view().balls.back().velocity_mps;
+            if (world.balls_left() > 0) struck_mps = world.field().ai_balls.back().velocity_mps;
         }
         EXPECT_GT(struck_mps.dot(outwards), 0.0);
     }
@@ -186,7 +188,7 @@ TEST(Wanderer, covers_ground) {
     Vec2d last_m = Vec2d::Zero();
     while (world.seconds() < 20.0) {
         world.tick(*wanderer, rng);
-        const Vec2d now_m = world.view().balls.front().position_m;
+        const Vec2d now_m = world.field().player_balls.front().position_m;
         path_m += (now_m - last_m).norm();
         last_m = now_m;
     }

@@ -7,6 +7,8 @@
 namespace fts::bot {
 namespace {
 
+constexpr std::uint16_t kPilotsId = 1;
+
 physics::Scene scene_of(const physics::Platform& platform,
                         const std::vector<physics::BodyDef>& balls) {
     physics::Scene scene;
@@ -32,35 +34,36 @@ double PilotedWorld::seconds() const {
     return ticks_ * game::kTickDurationS;
 }
 
-client::View PilotedWorld::view() const {
-    client::View view;
-    view.server_time_s = seconds();
-    view.phase = game::Phase::kPlaying;
-    view.level.platform = platform_;
-    view.own_player_id = 1;
-    view.coins = coins_;
-    view.link.interpolation_delay_s = static_cast<double>(lag_ticks_) * game::kTickDurationS;
+Field PilotedWorld::field() const {
+    Field field;
+    field.server_time_s = seconds();
+    field.platform = platform_;
+    field.coins = coins_;
     for (std::size_t i = 0; i < ids_.size(); ++i) {
         if (!world_.contains(ids_[i])) continue;
         const auto body = world_.body(ids_[i]);
-        client::BallView ball;
+        FieldBall ball;
         ball.id = static_cast<std::uint16_t>(i + 1);
         ball.position_m = body.position_m;
         ball.velocity_mps = body.velocity_mps;
         ball.radius_m = body.radius_m;
         ball.mass_kg = body.mass_kg;
-        ball.is_player = ball.is_own = i == 0;
-        if (ball.is_own) view.own_ball = view.balls.size();
-        view.balls.push_back(ball);
+        ball.to_edge_m = physics::distance_to_edge_m(platform_, body.position_m);
+        ball.player_id = i == 0 ? kPilotsId : std::uint16_t{0};
+        (i == 0 ? field.player_balls : field.ai_balls).push_back(ball);
     }
-    return view;
+    return field;
+}
+
+Sight PilotedWorld::sight(const Field& field) const {
+    return sight_of(field, kPilotsId, {}, static_cast<double>(lag_ticks_) * game::kTickDurationS);
 }
 
 void PilotedWorld::tick(Pilot& pilot, Rng& rng) {
-    seen_.push_back(view());
+    seen_.push_back(field());
     if (seen_.size() > lag_ticks_ + 1) seen_.pop_front();
     if (pilot_is_on()) {
-        const game::InputCommand command = pilot.decide(seen_.front(), rng);
+        const game::InputCommand command = pilot.decide(sight(seen_.front()), rng);
         const game::Handling handling = game::handling_of(stats_);
         world_.set_control(ids_.front(), game::control_for(handling, command));
         const auto own = world_.body(ids_.front());

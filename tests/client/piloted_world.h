@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "client/bot/pilot.h"
-#include "client/core/view.h"
 #include "common/game/movement.h"
 #include "common/physics/world.h"
 
@@ -28,7 +27,10 @@ class PilotedWorld {
     std::size_t coins_left() const { return coins_.size(); }
     double seconds() const;
 
-    client::View view() const;
+    // As it is now.
+    Field field() const;
+    // The pilot's own, of `field`, which is so late.
+    Sight sight(const Field& field) const;
 
   private:
     physics::Platform platform_;
@@ -37,7 +39,7 @@ class PilotedWorld {
     std::vector<client::CoinView> coins_;
     game::BallStats stats_ = game::stats_for({});
     game::DashState dash_;
-    std::deque<client::View> seen_;
+    std::deque<Field> seen_;
     std::size_t lag_ticks_;
     int ticks_ = 0;
 };

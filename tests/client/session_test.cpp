@@ -242,6 +242,23 @@ TEST(Session, tells_starved_frames_from_others) {
     EXPECT_GT(table.session->stats().frames_starved, 40U);
 }
 
+TEST(Session, knows_at_a_glance_how_old_the_newest_snapshot_is) {
+    Table table({.delay_s = 0.04});
+    table.run_until_playing();
+    table.run(3.0, [&] {
+        const Glance glance = table.session->glance(table.now_s);
+        ASSERT_TRUE(glance.newest);
+        // A snapshot that arrives now was sent 40 ms ago, and one in two ticks is sent.
+        const double arriving_s = table.server.now_tick * kTickS - 0.04;
+        EXPECT_NEAR(glance.newest->tick * kTickS + glance.age_s, arriving_s, 1.5 * kTickS);
+        EXPECT_GE(glance.age_s, 0.0);
+        EXPECT_LT(glance.age_s, 3.0 * kTickS);
+    });
+    const SessionStats stats = table.session->stats();
+    EXPECT_NEAR(double(stats.frames), 180.0, 2.0);
+    EXPECT_LT(stats.frames_starved, 5U);
+}
+
 TEST(Session, seldom_starves_and_never_steps_at_5_percent_loss_and_20_ms_jitter) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -42,7 +42,7 @@ Vec2d push_direction(const physics::Platform& platform, const Vec2d& target_m) {
     return target_m.norm() > 1e-9 ? Vec2d(target_m.normalized()) : Vec2d(Vec2d::UnitX());
 }
 
-Plan plan_for(const Helm& helm, const client::BallView& target) {
+Plan plan_for(const Helm& helm, const FieldBall& target) {
     Plan plan;
     plan.reach_m = helm.radius_m + target.radius_m;
     double contact_s = 0.0;
@@ -57,7 +57,7 @@ Plan plan_for(const Helm& helm, const client::BallView& target) {
     return plan;
 }
 
-game::InputCommand charge(const Helm& helm, const client::BallView& target, const Plan& plan) {
+game::InputCommand charge(const Helm& helm, const FieldBall& target, const Plan& plan) {
     const Vec2d ghost_m = plan.target_m - plan.push * plan.reach_m;
     const Vec2d to_ghost_m = ghost_m - helm.position_m;
     const Vec2d to_target = (plan.target_m - helm.position_m).normalized();
@@ -86,24 +86,20 @@ game::InputCommand go_behind(const Helm& helm, const Plan& plan) {
 }
 
 // How far there is to go to get at a ball and push it off, as if both had the same mass.
-double effort_m(const client::View& view, const client::BallView& own,
-                const client::BallView& ball) {
+double effort_m(const FieldBall& own, const FieldBall& ball) {
     const double way_m = (ball.position_m - own.position_m).norm();
-    const double push_m =
-        std::max(0.0, physics::distance_to_edge_m(view.level.platform, ball.position_m));
+    const double push_m = std::max(0.0, ball.to_edge_m);
     return way_m + push_m * std::max(1.0, ball.mass_kg / std::max(own.mass_kg, 1e-6));
 }
 
 }  // namespace
 
-const client::BallView* Chaser::choose_target(const client::View& view) {
-    const client::BallView& own = view.balls[*view.own_ball];
-    const client::BallView* best = nullptr;
+const FieldBall* Chaser::choose_target(const Sight& sight) {
+    const FieldBall* best = nullptr;
     double best_effort_m = std::numeric_limits<double>::infinity();
-    for (const client::BallView& ball : view.balls) {
-        if (ball.is_player) continue;
+    for (const FieldBall& ball : sight.field.ai_balls) {
         const double loyalty = target_id_ == ball.id ? kLoyalty : 1.0;
-        const double effort = loyalty * effort_m(view, own, ball);
+        const double effort = loyalty * effort_m(*sight.own, ball);
         if (effort < best_effort_m) {
             best = &ball;
             best_effort_m = effort;
@@ -113,10 +109,10 @@ const client::BallView* Chaser::choose_target(const client::View& view) {
     return best;
 }
 
-game::InputCommand Chaser::decide(const client::View& view, Rng&) {
-    const auto helm = take_helm(view);
+game::InputCommand Chaser::decide(const Sight& sight, Rng&) {
+    const auto helm = take_helm(sight);
     if (!helm) return {};
-    const client::BallView* target = choose_target(view);
+    const FieldBall* target = choose_target(sight);
     if (target == nullptr) {
         return stay_on(*helm, fly_to(*helm, innermost_point_m(helm->platform, helm->position_m)));
     }

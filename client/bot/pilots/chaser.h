@@ -12,11 +12,11 @@ namespace fts::bot {
 
 class Chaser final : public Pilot {
   public:
-    game::InputCommand decide(const client::View& view, Rng& rng) override;
+    game::InputCommand decide(const Sight& sight, Rng& rng) override;
     std::span<const game::Stat> shopping_list() const override;
 
   private:
-    const client::BallView* choose_target(const client::View& view);
+    const FieldBall* choose_target(const Sight& sight);
 
     std::optional<std::uint16_t> target_id_;
 };

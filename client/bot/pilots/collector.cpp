@@ -13,14 +13,14 @@ constexpr std::array kCollectorWants = {game::Stat::kMagnet, game::Stat::kTopSpe
 
 }  // namespace
 
-game::InputCommand Collector::decide(const client::View& view, Rng& rng) {
-    const auto helm = take_helm(view);
+game::InputCommand Collector::decide(const Sight& sight, Rng& rng) {
+    const auto helm = take_helm(sight);
     if (!helm) return {};
     const auto distance_m = [&](const client::CoinView& coin) {
         return (coin.position_m - helm->position_m).norm();
     };
-    const auto nearest = std::ranges::min_element(view.coins, {}, distance_m);
-    if (nearest == view.coins.end()) return meanwhile_.decide(view, rng);
+    const auto nearest = std::ranges::min_element(sight.field.coins, {}, distance_m);
+    if (nearest == sight.field.coins.end()) return meanwhile_.decide(sight, rng);
     return stay_on(*helm, fly_to(*helm, nearest->position_m));
 }
 

@@ -21,10 +21,9 @@ struct Threat {
     double contact_s = kAlarmS;
 };
 
-std::optional<Threat> nearest_threat(const client::View& view, const Helm& helm) {
+std::optional<Threat> nearest_threat(const Sight& sight, const Helm& helm) {
     std::optional<Threat> nearest;
-    for (const client::BallView& ball : view.balls) {
-        if (ball.is_player) continue;
+    for (const FieldBall& ball : sight.field.ai_balls) {
         const Vec2d apart_m = ahead(helm, ball, 0.0) - helm.position_m;
         const double distance_m = apart_m.norm();
         if (distance_m < 1e-6) continue;
@@ -40,11 +39,11 @@ std::optional<Threat> nearest_threat(const client::View& view, const Helm& helm)
 
 }  // namespace
 
-game::InputCommand Defender::decide(const client::View& view, Rng&) {
-    const auto helm = take_helm(view);
+game::InputCommand Defender::decide(const Sight& sight, Rng&) {
+    const auto helm = take_helm(sight);
     if (!helm) return {};
     const Vec2d home_m = innermost_point_m(helm->platform, helm->position_m);
-    const auto threat = nearest_threat(view, *helm);
+    const auto threat = nearest_threat(sight, *helm);
     if (threat && (home_m - helm->position_m).norm() < kLeashM) {
         game::InputCommand blow = fly_at(*helm, threat->direction * helm->top_speed_mps);
         blow.dash = true;

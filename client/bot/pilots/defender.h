@@ -7,7 +7,7 @@ namespace fts::bot {
 
 class Defender final : public Pilot {
   public:
-    game::InputCommand decide(const client::View& view, Rng& rng) override;
+    game::InputCommand decide(const Sight& sight, Rng& rng) override;
     std::span<const game::Stat> shopping_list() const override;
 };
 

@@ -7,7 +7,7 @@ namespace fts::bot {
 
 class Idle final : public Pilot {
   public:
-    game::InputCommand decide(const client::View&, Rng&) override { return {}; }
+    game::InputCommand decide(const Sight&, Rng&) override { return {}; }
     std::span<const game::Stat> shopping_list() const override { return {}; }
 };
 

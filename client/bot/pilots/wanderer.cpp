@@ -25,14 +25,14 @@ physics::Vec2d random_point_m(const physics::Platform& platform, Rng& rng) {
 
 }  // namespace
 
-game::InputCommand Wanderer::decide(const client::View& view, Rng& rng) {
-    const auto helm = take_helm(view);
+game::InputCommand Wanderer::decide(const Sight& sight, Rng& rng) {
+    const auto helm = take_helm(sight);
     if (!helm) return {};
     const bool arrived = (goal_m_ - helm->position_m).norm() < kArrivedM;
     const bool off = physics::distance_to_edge_m(helm->platform, goal_m_) < kEdgeMarginM;
-    if (arrived || off || view.server_time_s >= give_up_at_s_) {
+    if (arrived || off || sight.field.server_time_s >= give_up_at_s_) {
         goal_m_ = random_point_m(helm->platform, rng);
-        give_up_at_s_ = view.server_time_s + kPatienceS;
+        give_up_at_s_ = sight.field.server_time_s + kPatienceS;
     }
     return stay_on(*helm, fly_to(*helm, goal_m_));
 }
