@@ -179,6 +179,7 @@ void LatticeWorld::steer(std::size_t slot, const BallState& controls) {
 }
 
 void LatticeWorld::dash(std::size_t slot) {
+    if (!course_.dash_of) return;
     const physics::BodyId body = find(balls_[slot].id)->body;
     world_.set_velocity(body, world_.body(body).velocity_mps + course_.dash_of(balls_[slot]));
 }

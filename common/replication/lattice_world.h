@@ -35,7 +35,7 @@ struct Course {
     physics::SolverChoice solver;
     Lattice lattice;
     double tick_s = 1.0 / 60.0;
-    // What the control of a ball does to it, and what a dash of it does.
+    // What the control of a ball does to it, and what a dash of it does; without them nothing.
     std::function<physics::Control<double>(const BallState&)> control_of;
     std::function<physics::Vec2d(const BallState&)> dash_of;
 };

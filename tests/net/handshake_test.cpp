@@ -35,7 +35,7 @@ TEST(Handshake, is_the_five_packets_that_are_written_down_and_of_their_size) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const Datagram& bytes = pair.network.sent[i].bytes;
         const Datagram start{'F', 'T', 'S', 'A', static_cast<std::uint8_t>(expected[i].first),
-                             1,   0};
+                             2,   0};
         EXPECT_EQ(Datagram(bytes.begin(), bytes.begin() + kHeaderBytes), start);
         EXPECT_EQ(bytes.size(), expected[i].second);
     }
@@ -157,8 +157,22 @@ TEST(Handshake, ends_of_different_versions_part_and_both_learn_the_others) {
     ASSERT_EQ(pair.client.disconnected.size(), 1U);
     EXPECT_EQ(pair.client.disconnected[0].reason, DisconnectReason::kWrongVersion);
     EXPECT_EQ(pair.client.disconnected[0].peer_version, 9);
+    EXPECT_NE(pair.client.disconnected[0].detail.find("protocol version 9"), std::string::npos);
+    EXPECT_NE(pair.client.disconnected[0].detail.find("version 4"), std::string::npos);
     EXPECT_EQ(pair.listener->last_foreign_version(), 4);
     EXPECT_EQ(pair.listener->drops().at(drop::kWrongVersion), 1U);
+}
+
+// Of the version before, too: what it would make of our packets is nothing to try.
+TEST(Handshake, a_client_of_the_version_before_is_refused) {
+    constexpr std::uint16_t kBefore = kProtocolVersion - 1;
+    Pair pair({}, {}, {.protocol_version = kBefore});
+    EXPECT_FALSE(pair.connect(1.0));
+    ASSERT_EQ(pair.client.disconnected.size(), 1U);
+    EXPECT_EQ(pair.client.disconnected[0].reason, DisconnectReason::kWrongVersion);
+    EXPECT_EQ(pair.client.disconnected[0].peer_version, kProtocolVersion);
+    EXPECT_EQ(pair.listener->last_foreign_version(), kBefore);
+    EXPECT_EQ(pair.listener->connection_count(), 0U);
 }
 
 TEST(Handshake, no_server_is_reported_as_unreachable_with_its_address) {

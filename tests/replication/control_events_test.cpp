@@ -286,6 +286,16 @@ TEST(LatticeWorld, LetsABallFallThatWasRoundedOverTheEdge) {
     EXPECT_TRUE(world.balls().empty());
 }
 
+// A part that was altered may say of anybody that it dashed.
+TEST(LatticeWorld, LeavesABallAsItIsWhereNobodyCanDash) {
+    Course course = disc_course();
+    course.dash_of = nullptr;
+    Rng rng(5);
+    LatticeWorld world(course, std::vector{ball_at(rng, 1)});
+    world.dash(0);
+    EXPECT_EQ(world.body(1).velocity_mps, physics::Vec2d::Zero());
+}
+
 TEST(ArenaReplay, ShowsEveryTickAndItsHits) {
     const game::BallStats stats = game::stats_for({});
     Rng rng(4);
