@@ -53,6 +53,12 @@ inline constexpr int kInputSlackWindowTicks = 2 * game::kTickRateHz;
 inline constexpr int kInputSilenceTicks = game::kTickRateHz / 2;
 static_assert(kMaxQueuedInputs <= replication::kMaxInputsPerPacket);
 
+// Of snapshots. With the least of it a level of a thousand balls is still sent whole in the time
+// for which a snapshot can be led on from.
+inline constexpr int kDefaultClientBytesPerS = 128'000;
+inline constexpr int kMinClientBytesPerS = 16'000;
+inline constexpr int kMaxClientBytesPerS = 100'000'000;
+
 inline constexpr double kInputPacketsPerS = 2.0 * game::kTickRateHz;
 inline constexpr double kInputPacketBurst = 60.0;
 inline constexpr double kChatLinesPerS = 1.0;

@@ -58,6 +58,7 @@ std::optional<Resources> acquire(const Options& options, std::string& error) {
     config.arenas = options.arenas;
     config.players_per_arena = options.players_per_arena;
     config.snapshot_rate_hz = options.snapshot_rate_hz;
+    config.client_bytes_per_s = options.client_bytes_per_s;
     config.stage_clock = monotonic_now_s;
     config.seed = options.seed;
     config.tolerance = options.tolerance;

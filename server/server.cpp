@@ -153,18 +153,38 @@ void Server::publish_snapshot(Arena& arena) {
     transport_.flush();
 }
 
+// Between the courier of one client and its connection.
+class Server::SnapshotLink final : public SnapshotCourier::Link {
+  public:
+    SnapshotLink(Server& server, Session& session)
+        : server_(server), session_(session), input_slack_(session.inputs.take_slack()) {}
+
+    void send(replication::SnapshotPacket::Kind kind, std::span<const std::uint8_t> part) override {
+        server_.stages_.enter(Stage::kSeal);
+        const auto bytes = replication::encode(replication::SnapshotPacket{
+            session_.inputs.applied_sequence(), input_slack_, kind, {part.begin(), part.end()}});
+        if (!server_.listener_.send_unreliable(session_.id, bytes)) {
+            server_.count("snapshot_not_sent");
+        }
+        server_.stages_.enter(Stage::kSnapshots);
+    }
+    bool send_reliable(std::span<const std::uint8_t> message) override {
+        return server_.listener_.send_reliable(session_.id, message);
+    }
+
+  private:
+    Server& server_;
+    const Session& session_;
+    const std::uint8_t input_slack_;
+};
+
 void Server::send_snapshot(Arena& arena, Session& session) {
     stages_.enter(Stage::kSnapshots);
-    const SnapshotFeed::Coded& coded =
-        arena.feed.coded_for(session.held_tick, arena.match.events());
-    if (coded.parts.empty()) count("snapshot_too_large");
-    stages_.enter(Stage::kSeal);
-    const std::uint8_t input_slack = session.inputs.take_slack();
-    for (const std::vector<std::uint8_t>& part : coded.parts) {
-        const auto bytes = replication::encode(replication::SnapshotPacket{
-            session.inputs.applied_sequence(), input_slack, coded.kind, part});
-        if (!listener_.send_unreliable(session.id, bytes)) count("snapshot_not_sent");
-    }
+    SnapshotLink link(*this, session);
+    const SnapshotCourier::Sent sent =
+        session.courier.deliver(arena.feed, arena.match.events(), session.player, link);
+    if (sent.over_budget) count("snapshot_over_budget");
+    if (sent.keyframe_given_up) count("keyframe_given_up");
 }
 
 void Server::settle_ledger(double now_s) {

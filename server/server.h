@@ -30,6 +30,7 @@
 #include "server/economy/journal.h"
 #include "server/economy/ledger.h"
 #include "server/economy/store.h"
+#include "server/limits.h"
 #include "server/log.h"
 #include "server/match/match.h"
 #include "server/session.h"
@@ -46,6 +47,7 @@ struct ServerConfig {
     int arenas = 1;                                         // [1, kMaxArenas]
     int players_per_arena = game::kDefaultPlayersPerArena;  // [1, game::kMaxPlayersPerArena]
     int snapshot_rate_hz = game::kSnapshotRateHz;           // one of kSnapshotRatesHz
+    int client_bytes_per_s = kDefaultClientBytesPerS;       // of snapshots, to each (limits.h)
     std::uint64_t seed = 1;                                 // arena i plays with seed + i
     JournalConfig journal;
     double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h
@@ -117,6 +119,7 @@ class Server {
     void apply_inputs(Arena& arena);
     void deliver(Arena& arena);
     void note_level(const Arena& arena, const Outgoing& outgoing);
+    class SnapshotLink;
     void publish_snapshot(Arena& arena);
     void send_snapshot(Arena& arena, Session& session);
     void settle_ledger(double now_s);

@@ -81,9 +81,7 @@ void Server::on(const net::UnreliablePayload& event, double now_s) {
     }
     const replication::Tick newest =
         arenas_[static_cast<std::size_t>(session->arena)]->feed.newest_tick();
-    const replication::Tick acked = packet->acked_snapshot_tick;
-    // 0: the client has lost what it held.
-    if (acked == 0 || (acked <= newest && acked > session->held_tick)) session->held_tick = acked;
+    session->courier.acknowledge(packet->acked_snapshot_tick, newest);
 }
 
 void Server::handle(Session& session, const replication::JoinRequest& request, double now_s) {
@@ -202,6 +200,7 @@ void Server::admit(Session& session, const PlayerRecord& record, double now_s) {
     assert(player);
     session.arena = *place;
     session.player = *player;
+    session.courier = SnapshotCourier(config_.client_bytes_per_s);
     session.enter(Session::State::kPlaying, now_s);
     arena.players[*player] = &session;
     if (record.name != session.name) renames_.push_back({session.key, session.name});

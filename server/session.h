@@ -12,11 +12,11 @@
 #include <string>
 
 #include "common/net/connection.h"
-#include "common/replication/snapshot.h"
 #include "server/input_queue.h"
 #include "server/limits.h"
 #include "server/match/match.h"
 #include "server/rate_limit.h"
+#include "server/snapshot_courier.h"
 
 namespace fts::server {
 
@@ -40,7 +40,7 @@ struct Session {
     int arena = 0;
     PlayerId player = 0;
     InputQueue inputs;
-    replication::Tick held_tick = 0;  // newest snapshot the client says it has; 0: none
+    SnapshotCourier courier{kDefaultClientBytesPerS};
 
     RateLimit input_packets{kInputPacketsPerS, kInputPacketBurst};
     RateLimit chat_lines{kChatLinesPerS, kChatBurst};

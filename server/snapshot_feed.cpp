@@ -6,54 +6,95 @@
 #include "common/net/connection.h"
 #include "common/replication/delta.h"
 #include "common/replication/snapshot_codec.h"
+#include "common/replication/wire.h"
 
 namespace fts::server {
 
 namespace {
 
-// What a SnapshotPacket adds around its part.
-constexpr std::size_t kPacketOverheadBytes = 24;
-constexpr std::size_t kMaxPartBytes = net::kMaxPayloadBytes - kPacketOverheadBytes;
+using Kind = replication::SnapshotPacket::Kind;
+using replication::Snapshot;
+using replication::Tick;
+
+const Snapshot kNothing;
+
+constexpr std::size_t kMaxPartBytes =
+    net::kMaxPayloadBytes - replication::kMaxSnapshotPacketOverheadBytes;
 static_assert(kMaxPartBytes >= replication::kAmplePartBytes);
+static_assert(replication::kMaxKeyframePartBytes >= replication::kAmplePartBytes);
+static_assert(replication::kMaxPredictedTicks <= replication::kMaxBaselineAgeTicks);
+
+// With more of them a snapshot that has no baseline does not fit a datagram; nor is it tried.
+constexpr std::size_t kMostBallsInADatagram = kMaxPartBytes / 8;
+// Who needs a keyframe within this time of another's is sent the same one.
+constexpr Tick kKeyframeSharedForTicks = 15;
 
 }  // namespace
 
-void SnapshotFeed::publish(replication::Snapshot snapshot) {
+void SnapshotFeed::publish(Snapshot snapshot) {
     assert(snapshot.tick > newest_tick());
-    newest_ = std::make_shared<const replication::Snapshot>(std::move(snapshot));
+    newest_ = std::make_shared<const Snapshot>(std::move(snapshot));
     history_.add(newest_);
     encoded_.clear();
 }
 
-replication::Tick SnapshotFeed::newest_tick() const {
+Tick SnapshotFeed::newest_tick() const {
     return newest_ ? newest_->tick : 0;
 }
 
-const SnapshotFeed::Coded& SnapshotFeed::coded_for(replication::Tick held_tick,
-                                                   const EventLog& log) {
+const SnapshotFeed::Coded* SnapshotFeed::lead_on(Tick held_tick, const EventLog& log) {
     assert(newest_);
     const auto baseline = held_tick < newest_->tick ? history_.find(held_tick) : nullptr;
-    const replication::Tick baseline_tick = baseline ? held_tick : 0;
-
-    const auto found = encoded_.find(baseline_tick);
-    if (found != encoded_.end()) return found->second;
-    ++encoded_count_;
-    return encoded_[baseline_tick] = encode(baseline.get(), log);
+    const Tick baseline_tick = baseline ? held_tick : 0;
+    auto found = encoded_.find(baseline_tick);
+    if (found == encoded_.end()) {
+        ++encoded_count_;
+        found = encoded_.emplace(baseline_tick, encode(baseline.get(), log)).first;
+    }
+    return found->second ? &*found->second : nullptr;
 }
 
-SnapshotFeed::Coded SnapshotFeed::encode(const replication::Snapshot* baseline,
-                                         const EventLog& log) const {
-    using Kind = replication::SnapshotPacket::Kind;
-    static const replication::Snapshot kNothing;
-    const bool can_be_replayed = baseline && log.reaches_back_to(baseline->tick) &&
-                                 newest_->tick - baseline->tick <= replication::kMaxPredictedTicks;
-    if (can_be_replayed) {
-        const replication::ArenaEvents events = log.between(baseline->tick, newest_->tick);
-        auto part = replication::encode_events(*baseline, events, *newest_);
-        if (part.size() <= kMaxPartBytes) return {Kind::kEvents, {std::move(part)}};
+std::optional<SnapshotFeed::Coded> SnapshotFeed::encode(const Snapshot* baseline,
+                                                        const EventLog& log) const {
+    if (baseline && log.reaches_back_to(baseline->tick)) return encode_events(*baseline, log);
+    return encode_states(baseline);
+}
+
+std::optional<SnapshotFeed::Coded> SnapshotFeed::encode_events(const Snapshot& baseline,
+                                                               const EventLog& log) const {
+    auto outcome = newest_;
+    while (outcome && outcome->tick > baseline.tick) {
+        auto part = replication::encode_events(baseline, log.between(baseline.tick, outcome->tick),
+                                               *outcome);
+        if (part.size() <= kMaxPartBytes) {
+            const Kind kind = outcome == newest_ ? Kind::kEvents : Kind::kEarlierEvents;
+            return Coded{kind, outcome->tick, std::move(part)};
+        }
+        outcome = history_.newest_up_to(baseline.tick + (outcome->tick - baseline.tick) / 2);
     }
-    return {Kind::kStates,
-            replication::encode_delta(baseline ? *baseline : kNothing, *newest_, kMaxPartBytes)};
+    return std::nullopt;
+}
+
+std::optional<SnapshotFeed::Coded> SnapshotFeed::encode_states(const Snapshot* baseline) const {
+    if (newest_->balls.size() > kMostBallsInADatagram) return std::nullopt;
+    auto parts =
+        replication::encode_delta(baseline ? *baseline : kNothing, *newest_, kMaxPartBytes);
+    if (parts.size() != 1) return std::nullopt;
+    return Coded{Kind::kStates, newest_->tick, std::move(parts.front())};
+}
+
+std::shared_ptr<const SnapshotFeed::Keyframe> SnapshotFeed::keyframe() {
+    assert(newest_);
+    if (keyframe_ && newest_->tick - keyframe_->tick <= kKeyframeSharedForTicks) return keyframe_;
+    auto keyframe = std::make_shared<Keyframe>();
+    keyframe->tick = newest_->tick;
+    for (std::vector<std::uint8_t>& part :
+         replication::encode_delta(kNothing, *newest_, replication::kMaxKeyframePartBytes)) {
+        keyframe->messages.push_back(replication::encode(
+            replication::ServerMessage(replication::KeyframePart{std::move(part)})));
+    }
+    keyframe_ = std::move(keyframe);
+    return keyframe_;
 }
 
 }  // namespace fts::server

@@ -10,6 +10,7 @@ client::SessionStats sum_of(const client::SessionStats& earlier,
     using Link = net::LinkStats;
     constexpr auto kCounts = std::to_array({
         &Stats::snapshots_received,
+        &Stats::snapshots_sketched,
         &Stats::snapshots_missed,
         &Stats::snapshots_late,
         &Stats::snapshots_malformed,

@@ -84,6 +84,8 @@ constexpr auto kMetrics = std::to_array<Metric>({
      session_sum<&Stats::snapshots_missed>},
     {"late", "late", "of the missed, those that came after a newer one", 0, 1.0,
      session_sum<&Stats::snapshots_late>},
+    {"sketched", "sketched", "snapshots of which some balls were told and the rest guessed", 0, 1.0,
+     session_sum<&Stats::snapshots_sketched>},
     {"malformed", "malformed", "snapshots and messages that made no sense or led elsewhere", 0, 1.0,
      [](Tallies t) {
          return session_sum<&Stats::snapshots_malformed>(t) +

@@ -63,7 +63,8 @@ struct Session::Impl {
     void handle_message(const std::vector<std::uint8_t>& bytes, double now_s);
     void handle_snapshot_part(const std::vector<std::uint8_t>& bytes, double now_s);
     void take_input_timing(const replication::SnapshotPacket& packet, double now_s);
-    void take_snapshot(replication::SnapshotReceiver::Received received, std::uint32_t acked_input);
+    void take_snapshot(replication::SnapshotReceiver::Received received);
+    replication::Tick whole_ticks_per_snapshot() const;
     void predict(View& view, double now_s);
     LinkView count_frame(double drawn_s, double now_s);
     void count_missed_before(replication::Tick tick);
@@ -84,7 +85,11 @@ struct Session::Impl {
     replication::SnapshotReceiver receiver;
     ArenaMirror arena;
     ServerClock clock;
+    const replication::SnapshotReceiver::CourseOf courses = [this](int level) {
+        return arena.course_of(level);
+    };
     replication::Tick heard_tick = 0;
+    std::uint32_t acked_input = 0;           // by the packet that came last
     double looked_s = 0.0, arrival_s = 0.0;  // last, and what that makes of what has now come
     double ticks_per_snapshot = double(game::kTickRateHz) / game::kSnapshotRateHz;
 
@@ -143,6 +148,10 @@ void Session::Impl::handle_message(const std::vector<std::uint8_t>& bytes, doubl
         welcome(*hello, now_s);
         return;
     }
+    if (const auto* part = std::get_if<replication::KeyframePart>(&*message)) {
+        take_snapshot(receiver.receive(*part, whole_ticks_per_snapshot(), courses));
+        return;
+    }
     arena.apply(*message);
     if (const auto kind = notice_kind_of(*message)) notice(*kind, *message);
 }
@@ -173,15 +182,18 @@ void Session::Impl::handle_snapshot_part(const std::vector<std::uint8_t>& bytes,
     }
     inputs.acknowledge(packet->acked_input_sequence);
     const replication::Tick tick = replication::tick_of(*packet);
-    if (tick != heard_tick) {
+    const bool tells_of_now = packet->kind != replication::SnapshotPacket::Kind::kEarlierEvents;
+    if (tells_of_now && tick != heard_tick) {
         clock.hear(double(tick) / arena.tick_rate_hz(), arrival_s);
         if (tick > heard_tick) take_input_timing(*packet, now_s);
         heard_tick = tick;
     }
-    const auto whole_ticks = std::max(1LL, std::llround(ticks_per_snapshot));
-    auto received = receiver.receive(*packet, static_cast<replication::Tick>(whole_ticks),
-                                     [this](int level) { return arena.course_of(level); });
-    if (received.snapshot) take_snapshot(std::move(received), packet->acked_input_sequence);
+    acked_input = packet->acked_input_sequence;
+    take_snapshot(receiver.receive(*packet, whole_ticks_per_snapshot(), courses));
+}
+
+replication::Tick Session::Impl::whole_ticks_per_snapshot() const {
+    return static_cast<replication::Tick>(std::max(1LL, std::llround(ticks_per_snapshot)));
 }
 
 void Session::Impl::take_input_timing(const replication::SnapshotPacket& packet, double now_s) {
@@ -204,14 +216,20 @@ void Session::Impl::count_missed_before(replication::Tick tick) {
     recent_loss = (1.0 - (1.0 - recent_loss) * kept) * (1.0 - kLossShare);
 }
 
-void Session::Impl::take_snapshot(replication::SnapshotReceiver::Received received,
-                                  std::uint32_t acked_input) {
+// What is older than what is shown already is only held, to go on from.
+void Session::Impl::take_snapshot(replication::SnapshotReceiver::Received received) {
+    if (!received.snapshot) return;
     const Snapshot& snapshot = *received.snapshot;
+    if (arena.has_snapshot() && snapshot.tick <= arena.newest_tick()) return;
     count_missed_before(snapshot.tick);
-    ++stats.snapshots_received;
-    clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), arrival_s);
+    ++(received.exact ? stats.snapshots_received : stats.snapshots_sketched);
+    if (snapshot.tick == heard_tick) {
+        clock.observe(double(snapshot.tick) / arena.tick_rate_hz(), arrival_s);
+    }
     const auto course = config.predicts_own_ball ? arena.course_of(snapshot.level) : std::nullopt;
     if (course) prediction.rebase(*course, snapshot, arena.own_player_id(), acked_input);
+    std::erase_if(received.controls,
+                  [&](const auto& event) { return event.tick <= arena.newest_tick(); });
     arena.add(std::move(received.snapshot), std::move(received.controls));
 }
 

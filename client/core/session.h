@@ -53,6 +53,7 @@ struct Notice {
 
 struct SessionStats {
     std::uint64_t snapshots_received = 0;  // whole ones
+    std::uint64_t snapshots_sketched = 0;  // of which some balls were told, and the rest guessed
     std::uint64_t snapshots_missed = 0;    // by tick numbers that never came in time
     std::uint64_t snapshots_late = 0;      // of the missed: parts that came after a newer snapshot
     std::uint64_t snapshots_malformed = 0;

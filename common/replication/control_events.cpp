@@ -98,10 +98,34 @@ class ChangeCoder {
     void reached(Tick tick) { after_ = tick; }
 
   private:
+    // Balls come in crowds, alike and at rest; so what is as it was of the one before is a bit.
     void put(BallState& ball) {
-        ball.id = id(ball.id);
-        for (std::int32_t* field : {&ball.x, &ball.y, &ball.vx, &ball.vy}) *field = number(*field);
+        unless(next_id_, ball.id, static_cast<std::uint16_t>(put_before_.id + 1),
+               [this](auto value) { return id(value); });
+        ball.x = number(ball.x);
+        ball.y = number(ball.y);
+        for (std::int32_t* speed : {&ball.vx, &ball.vy}) {
+            unless(at_rest_, *speed, 0, [this](auto value) { return number(value); });
+        }
         thrust_.code(coder_, ball);
+        unless(same_body_, ball, body_of(put_before_, ball), [this](BallState different) {
+            body(different);
+            return different;
+        });
+        put_before_ = ball;
+    }
+    static BallState body_of(BallState body, const BallState& motion) {
+        body.id = motion.id;
+        body.x = motion.x;
+        body.y = motion.y;
+        body.vx = motion.vx;
+        body.vy = motion.vy;
+        body.thrust_x = motion.thrust_x;
+        body.thrust_y = motion.thrust_y;
+        body.brake = motion.brake;
+        return body;
+    }
+    void body(BallState& ball) {
         ball.radius = id(ball.radius);
         ball.mass = wide(ball.mass);
         ball.kind = static_cast<std::uint8_t>(coder_.raw(ball.kind, 8));
@@ -111,6 +135,10 @@ class ChangeCoder {
                                      &ball.handling.braking, &ball.handling.dash}) {
             *trait = wide(*trait);
         }
+    }
+    template <typename Value, typename Code>
+    void unless(AdaptiveBit& is_so, Value& value, const Value& expected, const Code& code) {
+        value = coder_.bit(is_so, value == expected) ? expected : code(value);
     }
     std::uint16_t id(std::uint16_t value) {
         return static_cast<std::uint16_t>(coder_.raw(value, 16));
@@ -126,6 +154,8 @@ class ChangeCoder {
     Coder& coder_;
     Tick after_, end_;
     AdaptiveBit another_{0x0400, 8};
+    AdaptiveBit next_id_{0x8000, 8}, at_rest_{0x8000, 8}, same_body_{0x8000, 8};
+    BallState put_before_;
     ThrustModel thrust_ = ThrustModel::of_keyboards();
 };
 

@@ -11,7 +11,6 @@
 #include "common/replication/byte_stream.h"
 #include "common/replication/delta.h"
 #include "common/replication/snapshot.h"
-#include "common/replication/snapshot_history.h"
 
 namespace fts::replication::delta_format {
 
@@ -41,11 +40,8 @@ inline constexpr std::size_t kMaxHeaderBytes =
 inline constexpr std::size_t kClosingBytes = 3;
 inline constexpr std::size_t kMaxHitsPerPart = 127;
 
-// The age of a baseline is one byte, and every baseline that a history can still hold has one.
+// The age of a baseline is one byte.
 static_assert(kMaxBaselineAgeTicks == std::numeric_limits<std::uint8_t>::max());
-inline constexpr std::size_t kLowestSnapshotRateHz = 20;
-static_assert(SnapshotHistory::kCapacity * game::kTickRateHz / kLowestSnapshotRateHz <=
-              kMaxBaselineAgeTicks);
 
 // ---- records of a list
 // -----------------------------------------------------------------------------

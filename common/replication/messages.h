@@ -125,8 +125,14 @@ struct CollisionReport {
     // energy were kept by all of them, not by these two alone.
     std::uint32_t contacts_at_once = 1;
 };
-using ServerMessage = std::variant<Welcome, JoinRefused, LevelStarted, LevelEnded, Roster, Wallet,
-                                   PurchaseResult, ChatLine, KnockOff, CollisionReport>;
+// One of several parts (delta.h) of a snapshot that is not told from a baseline.
+struct KeyframePart {
+    std::vector<std::uint8_t> part;  // at most kMaxKeyframePartBytes
+};
+inline constexpr std::size_t kMaxKeyframePartBytes = 1024;
+using ServerMessage =
+    std::variant<Welcome, JoinRefused, LevelStarted, LevelEnded, Roster, Wallet, PurchaseResult,
+                 ChatLine, KnockOff, CollisionReport, KeyframePart>;
 
 // ---- client to server, unreliable
 // -------------------------------------------------------------------
@@ -149,8 +155,10 @@ inline constexpr std::uint8_t kNoInputWaited = 255;  // a tick had to do without
 
 struct SnapshotPacket {
     enum class Kind : std::uint8_t {
-        kStates,  // delta.h
-        kEvents,  // control_events.h
+        kStates,         // delta.h: a whole snapshot
+        kSomeStates,     // delta.h: some of the balls of a snapshot, without a baseline
+        kEvents,         // control_events.h: all that led from the baseline to the newest snapshot
+        kEarlierEvents,  // the same, but to one that is not the newest: more is to come
     };
     std::uint32_t acked_input_sequence = 0;  // newest input the server has applied; 0: none
     // The least time that an input waited for its tick since the snapshot before, in
@@ -159,5 +167,6 @@ struct SnapshotPacket {
     Kind kind = Kind::kStates;
     std::vector<std::uint8_t> part;
 };
+bool tells_states(SnapshotPacket::Kind kind);  // and not events
 
 }  // namespace fts::replication

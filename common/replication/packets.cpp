@@ -19,6 +19,7 @@ constexpr std::size_t kMaxRun = 32;
 static_assert(kMaxRun == (0x100U >> kRepeatShift));
 
 using Inputs = std::vector<game::InputCommand>;
+using Kind = SnapshotPacket::Kind;
 
 void write_run(ByteWriter& out, const game::InputCommand& before, const game::InputCommand& input,
                std::size_t run) {
@@ -48,7 +49,33 @@ bool read_run(ByteReader& in, Inputs& inputs) {
     return true;
 }
 
+std::uint8_t tag_of(Kind kind) {
+    switch (kind) {
+        case Kind::kStates:
+            return kStatesPacketTag;
+        case Kind::kSomeStates:
+            return kSomeStatesPacketTag;
+        case Kind::kEvents:
+            return kEventsPacketTag;
+        case Kind::kEarlierEvents:
+            return kEarlierEventsPacketTag;
+    }
+    return 0;
+}
+
+std::optional<Kind> kind_of(std::uint8_t tag) {
+    for (const Kind kind :
+         {Kind::kStates, Kind::kSomeStates, Kind::kEvents, Kind::kEarlierEvents}) {
+        if (tag_of(kind) == tag) return kind;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
+
+bool tells_states(SnapshotPacket::Kind kind) {
+    return kind == Kind::kStates || kind == Kind::kSomeStates;
+}
 
 std::vector<std::uint8_t> encode(const InputPacket& packet) {
     assert(packet.inputs.size() <= kMaxInputsPerPacket);
@@ -84,7 +111,7 @@ std::optional<InputPacket> decode_input_packet(std::span<const std::uint8_t> byt
 
 std::vector<std::uint8_t> encode(const SnapshotPacket& packet) {
     ByteWriter out;
-    out.u8(packet.kind == SnapshotPacket::Kind::kStates ? kStatesPacketTag : kEventsPacketTag);
+    out.u8(tag_of(packet.kind));
     out.varint(packet.acked_input_sequence);
     out.u8(packet.input_slack);
     out.append(packet.part);
@@ -93,17 +120,15 @@ std::vector<std::uint8_t> encode(const SnapshotPacket& packet) {
 
 std::optional<SnapshotPacket> decode_snapshot_packet(std::span<const std::uint8_t> bytes) {
     ByteReader in(bytes);
-    const std::uint8_t tag = in.u8();
-    if (tag != kStatesPacketTag && tag != kEventsPacketTag) return std::nullopt;
+    const auto kind = kind_of(in.u8());
+    if (!kind) return std::nullopt;
     SnapshotPacket packet;
-    packet.kind =
-        tag == kStatesPacketTag ? SnapshotPacket::Kind::kStates : SnapshotPacket::Kind::kEvents;
+    packet.kind = *kind;
     packet.acked_input_sequence = in.varint();
     packet.input_slack = in.u8();
     if (in.failed()) return std::nullopt;
-    const bool is_a_part = packet.kind == SnapshotPacket::Kind::kStates
-                               ? peek_part(in.rest()).has_value()
-                               : peek_control_part(in.rest()).has_value();
+    const bool is_a_part = tells_states(packet.kind) ? peek_part(in.rest()).has_value()
+                                                     : peek_control_part(in.rest()).has_value();
     if (!is_a_part) return std::nullopt;
     packet.part.assign(in.rest().begin(), in.rest().end());
     return packet;

@@ -41,7 +41,7 @@ class SharedReplay {
     struct Arena {
         std::optional<ArenaReplay> running;  // at the newest snapshot that was made
         std::uint16_t level = 0;
-        std::array<Made, 16> recent;  // by tick, modulo
+        std::array<Made, 64> recent;  // by tick, modulo
     };
 
     std::map<std::uint8_t, Arena> arenas_;

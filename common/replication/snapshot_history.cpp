@@ -4,43 +4,41 @@
 #include <cassert>
 #include <utility>
 
+#include "common/replication/delta.h"
+
 namespace fts::replication {
 namespace {
 
-using Slot = std::shared_ptr<const Snapshot>;
-
-// An empty slot is older than any snapshot.
-bool is_older(const Slot& a, const Slot& b) {
-    if (!a || !b) return !a && b;
-    return a->tick < b->tick;
+Tick tick_of_held(const std::shared_ptr<const Snapshot>& snapshot) {
+    return snapshot->tick;
 }
 
 }  // namespace
 
 void SnapshotHistory::add(std::shared_ptr<const Snapshot> snapshot) {
     assert(snapshot);
-    for (Slot& slot : slots_) {
-        if (!slot || slot->tick != snapshot->tick) continue;
-        slot = std::move(snapshot);
-        return;
+    const auto place = std::ranges::lower_bound(held_, snapshot->tick, {}, tick_of_held);
+    if (place != held_.end() && (*place)->tick == snapshot->tick) {
+        *place = std::move(snapshot);
+    } else {
+        held_.insert(place, std::move(snapshot));
     }
-    Slot& oldest = *std::min_element(slots_.begin(), slots_.end(), is_older);
-    if (is_older(oldest, snapshot)) oldest = std::move(snapshot);
+    const Tick newest_tick = held_.back()->tick;
+    while (newest_tick - held_.front()->tick > kMaxBaselineAgeTicks) held_.pop_front();
 }
 
 std::shared_ptr<const Snapshot> SnapshotHistory::find(Tick tick) const {
-    for (const Slot& slot : slots_) {
-        if (slot && slot->tick == tick) return slot;
-    }
-    return nullptr;
+    auto found = newest_up_to(tick);
+    return found && found->tick == tick ? found : nullptr;
 }
 
 std::shared_ptr<const Snapshot> SnapshotHistory::newest() const {
-    return *std::max_element(slots_.begin(), slots_.end(), is_older);
+    return held_.empty() ? nullptr : held_.back();
 }
 
-void SnapshotHistory::clear() {
-    slots_.fill(nullptr);
+std::shared_ptr<const Snapshot> SnapshotHistory::newest_up_to(Tick tick) const {
+    const auto after = std::ranges::upper_bound(held_, tick, {}, tick_of_held);
+    return after == held_.begin() ? nullptr : *std::prev(after);
 }
 
 }  // namespace fts::replication

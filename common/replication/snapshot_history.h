@@ -1,10 +1,9 @@
-// The newest snapshots by tick, a fixed number of them: what a server keeps to encode deltas
-// against and a client keeps to decode them. A tick that has made room for a newer one is simply
-// absent.
+// The newest snapshots by tick: what a server keeps to encode against and a client keeps to decode
+// with. One that is more than kMaxBaselineAgeTicks older than the newest can be nobody's baseline
+// any more (delta.h) and is simply absent.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <deque>
 #include <memory>
 
 #include "common/replication/snapshot.h"
@@ -13,19 +12,18 @@ namespace fts::replication {
 
 class SnapshotHistory {
   public:
-    static constexpr std::size_t kCapacity = 64;  // about two seconds at 30 Hz
-
-    // Not null. Replaces one of the same tick; when full, the oldest makes room, and a snapshot
-    // older than all that are held is not kept.
+    // Not null. Replaces one of the same tick; one that is too old already is not kept.
     void add(std::shared_ptr<const Snapshot> snapshot);
     // nullptr when the tick is not held.
     std::shared_ptr<const Snapshot> find(Tick tick) const;
     // Of the greatest tick; nullptr when empty.
     std::shared_ptr<const Snapshot> newest() const;
-    void clear();
+    // The newest at or before `tick`; nullptr when there is none.
+    std::shared_ptr<const Snapshot> newest_up_to(Tick tick) const;
+    void clear() { held_.clear(); }
 
   private:
-    std::array<std::shared_ptr<const Snapshot>, kCapacity> slots_;
+    std::deque<std::shared_ptr<const Snapshot>> held_;  // ascending by tick
 };
 
 }  // namespace fts::replication

@@ -3,9 +3,14 @@
 #include <utility>
 
 namespace fts::replication {
+namespace {
+
+const Snapshot kNothing;
+
+}  // namespace
 
 Tick tick_of(const SnapshotPacket& packet) {
-    if (packet.kind == SnapshotPacket::Kind::kStates) {
+    if (tells_states(packet.kind)) {
         const auto header = peek_part(packet.part);
         return header ? header->tick : 0;
     }
@@ -16,8 +21,39 @@ Tick tick_of(const SnapshotPacket& packet) {
 SnapshotReceiver::Received SnapshotReceiver::receive(const SnapshotPacket& packet,
                                                      Tick snapshot_ticks,
                                                      const CourseOf& course_of) {
-    if (packet.kind == SnapshotPacket::Kind::kStates) return {receive_states(packet.part), {}};
-    return receive_events(packet.part, snapshot_ticks, course_of);
+    using Kind = SnapshotPacket::Kind;
+    if (packet.kind == Kind::kStates) return {.snapshot = receive_states(packet.part)};
+    if (packet.kind != Kind::kSomeStates) {
+        return receive_events(packet.part, snapshot_ticks, course_of);
+    }
+    const auto some = decode_alone(packet.part);
+    return some ? sketched_with(*some, snapshot_ticks, course_of) : Received{};
+}
+
+SnapshotReceiver::Received SnapshotReceiver::receive(const KeyframePart& part, Tick snapshot_ticks,
+                                                     const CourseOf& course_of) {
+    const auto some = decode_alone(part.part);
+    if (!some) return {};
+    if (auto whole = receive_states(part.part)) return {.snapshot = std::move(whole)};
+    return sketched_with(*some, snapshot_ticks, course_of);
+}
+
+std::optional<Snapshot> SnapshotReceiver::decode_alone(std::span<const std::uint8_t> part) {
+    auto some = decode_part(kNothing, part);
+    if (some && is_canonical(*some)) return some;
+    ++counts_.malformed;
+    return std::nullopt;
+}
+
+SnapshotReceiver::Received SnapshotReceiver::sketched_with(const Snapshot& part,
+                                                           Tick snapshot_ticks,
+                                                           const CourseOf& course_of) {
+    const auto exact = history_.newest();
+    const auto course = course_of(part.level);
+    if (!course || (exact && exact->tick >= part.tick)) return {};
+    if (exact && exact->tick > sketch_.now().tick) sketch_.begin(*exact);
+    sketch_.tell(part, *course, snapshot_ticks);
+    return {.snapshot = std::make_shared<const Snapshot>(sketch_.now()), .exact = false};
 }
 
 bool SnapshotReceiver::is_news(Tick tick) {
@@ -35,7 +71,6 @@ std::shared_ptr<const Snapshot> SnapshotReceiver::receive_states(
         return nullptr;
     }
     if (!is_news(header->tick)) return nullptr;
-    static const Snapshot kNothing;
     const auto held = history_.find(header->baseline_tick);
     if (!held && header->baseline_tick != 0) return nullptr;
     auto whole = assembler_.add(held ? *held : kNothing, part);
@@ -74,9 +109,16 @@ SnapshotReceiver::Received SnapshotReceiver::receive_events(std::span<const std:
     }
     if (result.outcome == SharedReplay::Outcome::kUnlike) {
         ++counts_.unlike;
-        history_.clear();
+        start_over();
     }
     return {};
+}
+
+void SnapshotReceiver::start_over() {
+    counts_.malformed += assembler_.malformed_count();
+    assembler_ = {};
+    history_.clear();
+    any_ = false;
 }
 
 std::shared_ptr<const Snapshot> SnapshotReceiver::keep(std::shared_ptr<const Snapshot> snapshot) {

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "arena.pb.h"
+#include "common/replication/delta.h"
 #include "common/replication/utf8.h"
 
 namespace fts::replication {
@@ -153,6 +154,9 @@ void put(const CollisionReport& message, pb::ServerMessage& out) {
     put(message.normal, *report.mutable_normal());
     report.set_impulse_ns(message.impulse_ns);
     report.set_contacts_at_once(message.contacts_at_once);
+}
+void put(const KeyframePart& message, pb::ServerMessage& out) {
+    out.mutable_keyframe_part()->set_part(message.part.data(), message.part.size());
 }
 
 // ---- Protobuf to values; false when a value is not acceptable
@@ -313,6 +317,12 @@ bool take(const pb::CollisionReport& from, CollisionReport& out) {
            take_finite(from.impulse_ns(), out.impulse_ns) && out.impulse_ns >= 0 &&
            take(from.contacts_at_once(), kMaxId, out.contacts_at_once) && out.contacts_at_once >= 1;
 }
+bool take(const pb::KeyframePart& from, KeyframePart& out) {
+    if (from.part().size() > kMaxKeyframePartBytes) return false;
+    out.part.assign(from.part().begin(), from.part().end());
+    const auto header = peek_part(out.part);
+    return header && header->baseline_tick == 0;
+}
 
 // ---- the two directions
 // ----------------------------------------------------------------------------
@@ -364,6 +374,8 @@ std::optional<ServerMessage> value_of(const pb::ServerMessage& from) {
             return taken<KnockOff, ServerMessage>(from.knock_off());
         case Proto::kCollisionReport:
             return taken<CollisionReport, ServerMessage>(from.collision_report());
+        case Proto::kKeyframePart:
+            return taken<KeyframePart, ServerMessage>(from.keyframe_part());
         case Proto::KIND_NOT_SET:
             break;
     }

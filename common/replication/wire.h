@@ -22,6 +22,8 @@ namespace fts::replication {
 inline constexpr std::uint8_t kInputPacketTag = 0x01;
 inline constexpr std::uint8_t kStatesPacketTag = 0x02;
 inline constexpr std::uint8_t kEventsPacketTag = 0x03;
+inline constexpr std::uint8_t kEarlierEventsPacketTag = 0x04;
+inline constexpr std::uint8_t kSomeStatesPacketTag = 0x05;
 // What a SnapshotPacket adds to its part, at most.
 inline constexpr std::size_t kMaxSnapshotPacketOverheadBytes = 7;
 // A tag, two varints, and inputs that all differ.

@@ -45,6 +45,11 @@ void declare(CLI::App& app, Options& options) {
         ->envname("FTS_SNAPSHOT_RATE")
         ->check(CLI::IsMember(std::vector<int>(kSnapshotRatesHz.begin(), kSnapshotRatesHz.end())))
         ->capture_default_str();
+    app.add_option("--client-rate", options.client_bytes_per_s,
+                   "Bytes a second that snapshots may take to each player, 16000 or more")
+        ->envname("FTS_CLIENT_RATE")
+        ->check(CLI::Range(kMinClientBytesPerS, kMaxClientBytesPerS))
+        ->capture_default_str();
     app.add_option("--seed", options.seed, "Seed of the matches; a random one by default")
         ->envname("FTS_SEED");
     app.add_option("--name", options.name, "Name shown to players")

@@ -8,6 +8,7 @@
 
 #include "common/game/rules.h"
 #include "common/physics/fidelity.h"
+#include "server/limits.h"
 
 namespace fts::server {
 
@@ -22,6 +23,7 @@ struct Options {
     int arenas = 1;
     int players_per_arena = game::kDefaultPlayersPerArena;
     int snapshot_rate_hz = game::kSnapshotRateHz;
+    int client_bytes_per_s = kDefaultClientBytesPerS;
     std::uint64_t seed = 0;
     std::string name = "Fear The Sphere";
     double tolerance = physics::kAutoTolerance;  // of collisions, as in common/physics/fidelity.h

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::span<const std::uint8_t> bytes(data, size);
     const auto packet = decode_snapshot_packet(bytes);
     if (!packet) return 0;
-    const bool of_states = packet->kind == fts::replication::SnapshotPacket::Kind::kStates;
+    const bool of_states = fts::replication::tells_states(packet->kind);
     if (of_states && !peek_part(packet->part)) std::abort();
     if (!of_states && !peek_control_part(packet->part)) std::abort();
     const auto again = encode(*packet);

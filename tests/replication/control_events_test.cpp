@@ -249,6 +249,37 @@ TEST(ControlEvents, OfAQuietArenaAreNearlyNothing) {
     EXPECT_LE(encode_events(baseline, {}, outcome).size(), 12U);
 }
 
+TEST(ControlEvents, OfACrowdThatIsPutTakeLittleMoreThanWhereItIs) {
+    Rng rng(10);
+    Snapshot baseline;
+    baseline.tick = 60;
+    ArenaEvents events;
+    for (std::uint16_t id = 100; id < 150; ++id) {
+        BallState ball = ball_at(rng, 100);
+        ball.id = id;
+        ball.vx = ball.vy = 0;
+        ball.thrust_x = ball.thrust_y = 0;
+        ball.brake = false;
+        if (!events.changes.empty()) {
+            const BallState& first = events.changes.front().ball;
+            ball = {.id = id,
+                    .x = ball.x,
+                    .y = ball.y,
+                    .radius = first.radius,
+                    .mass = first.mass,
+                    .kind = first.kind,
+                    .behaviour = first.behaviour,
+                    .player_id = first.player_id,
+                    .handling = first.handling};
+        }
+        events.changes.push_back(ArenaChange::ball_put(61, ball));
+    }
+    const Snapshot outcome = replay(disc_course(), baseline, 62, kTicksASnapshot, events);
+    const auto bytes = encode_events(baseline, events, outcome);
+    EXPECT_LT(bytes.size(), 50U * 11U);
+    EXPECT_EQ(decode_events(baseline, bytes)->events, events);
+}
+
 // Such as rounding leaves at the edge, or somebody sends who means harm.
 TEST(LatticeWorld, BringsBallsBackThatAreOffThePlatform) {
     const physics::Platform platforms[] = {physics::Disc{9.0}, physics::Rectangle{{7.0, 4.0}},

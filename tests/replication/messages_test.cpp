@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/replication/delta.h"
 #include "common/replication/wire.h"
 
 namespace fts::replication {
@@ -178,6 +179,23 @@ TEST(Messages, CollisionReportKeepsEveryBitOfItsDoubles) {
         EXPECT_EQ(got.velocity_after_mps, sent.velocity_after_mps);
     }
     EXPECT_TRUE(std::signbit(back.own.velocity_before_mps.y()));
+}
+
+TEST(Messages, KeyframePartsArePartsWithoutABaselineAndNothingElse) {
+    Snapshot now;
+    now.tick = 50;
+    now.balls = {{.id = 3, .x = 5, .y = 7, .radius = 9, .mass = 11}};
+    const KeyframePart part{encode_delta({}, now, kMaxKeyframePartBytes).front()};
+    EXPECT_EQ(through_the_wire(part).part, part.part);
+    EXPECT_TRUE(encode(ServerMessage(KeyframePart{})).empty());
+    Snapshot before = now;
+    before.tick = 48;
+    EXPECT_TRUE(encode(ServerMessage(
+                           KeyframePart{encode_delta(before, now, kMaxKeyframePartBytes).front()}))
+                    .empty());
+    KeyframePart long_part = part;
+    long_part.part.resize(kMaxKeyframePartBytes + 1);
+    EXPECT_TRUE(encode(ServerMessage(long_part)).empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/replication/byte_stream.h"
+#include "common/replication/control_events.h"
 #include "common/replication/delta.h"
 #include "common/replication/wire.h"
 #include "tests/replication/random_snapshots.h"
@@ -123,6 +124,26 @@ TEST(SnapshotPacket, CarriesAPartAndAddsNoMoreThanItsOverhead) {
         EXPECT_EQ(back->input_slack, packet.input_slack);
         EXPECT_EQ(back->part, part);
     }
+}
+
+TEST(SnapshotPacket, KeepsItsKind) {
+    using Kind = SnapshotPacket::Kind;
+    Snapshot baseline, outcome;
+    baseline.tick = 94;
+    outcome.tick = 96;
+    const Bytes states = encode_delta({}, outcome, kMinPartBytes).front();
+    const Bytes events = encode_events(baseline, {}, outcome);
+    for (const Kind kind :
+         {Kind::kStates, Kind::kSomeStates, Kind::kEvents, Kind::kEarlierEvents}) {
+        const SnapshotPacket packet{.kind = kind, .part = tells_states(kind) ? states : events};
+        const auto back = decode_snapshot_packet(encode(packet));
+        ASSERT_TRUE(back);
+        EXPECT_EQ(back->kind, kind);
+        EXPECT_EQ(back->part, packet.part);
+    }
+    Bytes unknown = encode(SnapshotPacket{.part = states});
+    unknown[0] = kSomeStatesPacketTag + 1;
+    EXPECT_FALSE(decode_snapshot_packet(unknown));
 }
 
 TEST(SnapshotPacket, WithoutTheHeaderOfAPartIsNothing) {

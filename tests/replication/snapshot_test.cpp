@@ -106,26 +106,30 @@ TEST(SnapshotHistory, HoldsTheNewestAndForgetsTheOldest) {
     EXPECT_EQ(history.newest(), nullptr);
     EXPECT_EQ(history.find(0), nullptr);
 
-    constexpr Tick kAdded = 3 * SnapshotHistory::kCapacity + 5;
-    for (Tick tick = 1; tick <= kAdded; ++tick) history.add(at(2 * tick));
-    EXPECT_EQ(history.newest()->tick, 2 * kAdded);
-    for (Tick tick = 1; tick <= kAdded; ++tick) {
-        const bool held = tick > kAdded - SnapshotHistory::kCapacity;
-        EXPECT_EQ(history.find(2 * tick) != nullptr, held) << tick;
-        EXPECT_EQ(history.find(2 * tick + 1), nullptr);
+    const Tick last = 3 * kMaxBaselineAgeTicks;
+    for (Tick tick = 2; tick <= last; tick += 2) history.add(at(tick));
+    for (Tick tick = 1; tick <= last; ++tick) {
+        const auto newest = history.newest()->tick;
+        const bool held = tick % 2 == 0 && newest - tick <= kMaxBaselineAgeTicks;
+        EXPECT_EQ(history.find(tick) != nullptr, held) << tick;
     }
     history.clear();
     EXPECT_EQ(history.newest(), nullptr);
-    EXPECT_EQ(history.find(2 * kAdded), nullptr);
+    EXPECT_EQ(history.find(last - 1), nullptr);
 }
 
-TEST(SnapshotHistory, LateArrivalsDoNotPushOutNewerOnes) {
+TEST(SnapshotHistory, LateArrivalsFindTheirPlaceUnlessTheyAreTooOld) {
     SnapshotHistory history;
-    for (Tick tick = 1; tick <= SnapshotHistory::kCapacity; ++tick) history.add(at(100 + tick));
-    history.add(at(50));
-    EXPECT_EQ(history.find(50), nullptr);
-    EXPECT_NE(history.find(101), nullptr);
-    EXPECT_EQ(history.newest()->tick, 100 + SnapshotHistory::kCapacity);
+    const Tick newest = 1000;
+    for (Tick tick = newest - 20; tick <= newest; tick += 2) history.add(at(tick));
+    history.add(at(newest - kMaxBaselineAgeTicks));
+    history.add(at(newest - kMaxBaselineAgeTicks - 1));
+    EXPECT_NE(history.find(newest - kMaxBaselineAgeTicks), nullptr);
+    EXPECT_EQ(history.find(newest - kMaxBaselineAgeTicks - 1), nullptr);
+    EXPECT_EQ(history.newest()->tick, newest);
+    EXPECT_EQ(history.newest_up_to(newest - 1)->tick, newest - 2);
+    EXPECT_EQ(history.newest_up_to(newest - 21)->tick, newest - kMaxBaselineAgeTicks);
+    EXPECT_EQ(history.newest_up_to(newest - kMaxBaselineAgeTicks - 1), nullptr);
 }
 
 TEST(SnapshotHistory, TheSameTickIsReplaced) {
@@ -135,11 +139,11 @@ TEST(SnapshotHistory, TheSameTickIsReplaced) {
     EXPECT_EQ(history.find(7)->level, 2);
 }
 
-TEST(SnapshotHistory, WhatWasFoundOutlivesItsPlaceInTheRing) {
+TEST(SnapshotHistory, WhatWasFoundOutlivesItsPlace) {
     SnapshotHistory history;
     history.add(at(1, 42));
     const auto held = history.find(1);
-    for (Tick tick = 2; tick <= 2 * SnapshotHistory::kCapacity; ++tick) history.add(at(tick));
+    history.add(at(2 + kMaxBaselineAgeTicks));
     EXPECT_EQ(history.find(1), nullptr);
     EXPECT_EQ(held->level, 42);
 }

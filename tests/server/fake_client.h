@@ -82,7 +82,9 @@ class FakeClient {
     std::optional<net::Disconnected> disconnected;
     replication::Snapshot snapshot;  // the newest whole one
     std::uint64_t snapshots = 0;
-    std::uint64_t replayed = 0;  // of the snapshots
+    std::uint64_t replayed = 0;    // of the snapshots
+    replication::Snapshot sketch;  // the newest one
+    std::uint64_t sketches = 0, keyframe_parts = 0;
     std::uint32_t acked_input_sequence = 0;
     std::uint32_t input_sequence = 0;
     bool sends_inputs = true;
@@ -93,17 +95,31 @@ class FakeClient {
     void on(const net::ReliableMessage& event) {
         auto message = replication::decode_server_message(event.bytes);
         ASSERT_TRUE(message);
+        if (const auto* part = std::get_if<replication::KeyframePart>(&*message)) {
+            ++keyframe_parts;
+            return take(receiver_.receive(*part, 2, courses_));
+        }
         messages.push_back(std::move(*message));
     }
     void on(const net::UnreliablePayload& event) {
         const auto packet = replication::decode_snapshot_packet(event.bytes);
         ASSERT_TRUE(packet);
         acked_input_sequence = packet->acked_input_sequence;
-        const auto [whole, controls] =
-            receiver_.receive(*packet, 2, [this](int level) { return course_of(level); });
-        if (!whole) return;
-        if (packet->kind == replication::SnapshotPacket::Kind::kEvents) ++replayed;
-        snapshot = *whole;
+        const auto received = receiver_.receive(*packet, 2, courses_);
+        if (received.exact && received.snapshot &&
+            packet->kind == replication::SnapshotPacket::Kind::kEvents) {
+            ++replayed;
+        }
+        take(received);
+    }
+    void take(const replication::SnapshotReceiver::Received& received) {
+        if (!received.snapshot) return;
+        if (!received.exact) {
+            sketch = *received.snapshot;
+            ++sketches;
+            return;
+        }
+        snapshot = *received.snapshot;
         ++snapshots;
     }
     std::optional<replication::Course> course_of(int number) const {
@@ -119,6 +135,9 @@ class FakeClient {
     net::MemoryTransport transport_;
     net::Dialer dialer_;
     replication::SnapshotReceiver receiver_;
+    const replication::SnapshotReceiver::CourseOf courses_ = [this](int level) {
+        return course_of(level);
+    };
 };
 
 }  // namespace fts::server

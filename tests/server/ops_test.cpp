@@ -62,6 +62,7 @@ TEST(Options, are_refused_with_a_usage_code_when_they_make_no_sense) {
         {"--config", "/nowhere"},  {"stray"},
         {"--fidelity", "good"},    {"--fidelity", "0"},
         {"--snapshot-rate", "25"}, {"--snapshot-rate", "0"},
+        {"--client-rate", "100"},  {"--client-rate", "nan"},
         {"--fidelity", "1.5"},     {"--fidelity", "nan"}};
     for (const auto& arguments : nonsense) {
         SCOPED_TRACE(arguments[0]);

@@ -1,5 +1,6 @@
 #include "server/server.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -37,6 +38,32 @@ TEST_F(ServerTest, sends_thirty_snapshots_a_second_to_be_replayed_from_what_the_
     EXPECT_NEAR(static_cast<double>(ada.snapshots - before), 30.0, 1.0);
     EXPECT_GE(ada.replayed, ada.snapshots - 5);
     EXPECT_EQ(ada.snapshot.balls.size(), 2U);
+}
+
+TEST_F(ServerTest, shows_a_late_joiner_of_a_crowd_its_own_ball_at_once_and_everything_soon) {
+    game::Level crowd = short_level();
+    crowd.time_limit_s = 600.0;
+    crowd.platform = physics::Disc{80.0};
+    crowd.ai = {game::AiGroup{.count = 600}};
+    config.levels = {crowd};
+    config.client_bytes_per_s = 64000;
+    start();
+    join("Ada");
+    run(6.0);
+    FakeClient& bob = connect();
+    bob.say(replication::JoinRequest{"Bob", -1});
+    ASSERT_TRUE(run_until([&] { return bob.sketches > 0; }));
+    EXPECT_EQ(bob.snapshots, 0U) << "more than fits a packet";
+    const auto own = std::ranges::find(bob.sketch.balls, bob.welcome()->player_id,
+                                       &replication::BallState::player_id);
+    EXPECT_NE(own, bob.sketch.balls.end());
+    ASSERT_TRUE(run_until([&] { return bob.snapshots > 0; }));
+    EXPECT_GT(bob.keyframe_parts, 10U);
+    EXPECT_GT(bob.snapshot.balls.size(), 500U);
+    const std::uint64_t before = bob.snapshots;
+    run(1.0);
+    EXPECT_NEAR(static_cast<double>(bob.snapshots - before), 30.0, 2.0);
+    EXPECT_EQ(bob.snapshot.balls, clients.front()->snapshot.balls) << "as Ada has it";
 }
 
 TEST_F(ServerTest, sends_as_many_snapshots_a_second_as_the_host_chose_and_says_so) {
