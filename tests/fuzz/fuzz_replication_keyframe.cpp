@@ -1,11 +1,15 @@
-// A keyframe's part is any bytes: it decodes to a canonical snapshot that can be sent on unchanged,
-// or to nothing.
+// A keyframe's part is any bytes: it decodes to a canonical snapshot that can be sent on unchanged
+// and sketched, or to nothing.
 #include <cstdlib>
 #include <span>
 
+#include "common/replication/arena_sketch.h"
 #include "common/replication/delta.h"
 #include "tests/fuzz/target.h"
 
+using fts::replication::ArenaSketch;
+using fts::replication::Course;
+using fts::replication::course_of;
 using fts::replication::decode_part;
 using fts::replication::encode_delta;
 using fts::replication::is_canonical;
@@ -20,5 +24,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         std::abort();
     const auto parts = encode_delta(Snapshot{}, *snapshot, 2 * size + kAmplePartBytes);
     if (parts.size() != 1 || decode_part(Snapshot{}, parts.front()) != snapshot) std::abort();
+    // Told, and run on for a moment.
+    static const Course kCourse = course_of(fts::physics::Disc{30.0}, {});
+    constexpr fts::replication::Tick kTicksASnapshot = 2;
+    ArenaSketch sketch;
+    for (Snapshot told = *snapshot; told.tick < snapshot->tick + 6; told.tick += kTicksASnapshot) {
+        sketch.tell(told, kCourse, kTicksASnapshot);
+        if (!is_canonical(sketch.now())) std::abort();
+    }
     return 0;
 }
