@@ -40,6 +40,19 @@ Vec2d around_the_hole(const Situation& situation, const Vec2d& goal) {
     return unit_or_zero(outward + onward) * (ring->inner_radius_m + ring->outer_radius_m) / 2.0;
 }
 
+struct Motion {
+    Vec2d position_m = Vec2d::Zero();
+    Vec2d velocity_mps = Vec2d::Zero();
+};
+
+Motion after(const Situation& situation, const Intent& intent, double hold_s) {
+    const SeenBall& own = situation.own;
+    Vec2d velocity = own.velocity_mps + intent.thrust * (acceleration_mps2(situation) * hold_s);
+    if (intent.dash) velocity += unit_or_zero(intent.thrust) * situation.stats.dash_speed_mps;
+    const Vec2d mean_velocity = (own.velocity_mps + velocity) / 2.0;
+    return {own.position_m + mean_velocity * hold_s, velocity};
+}
+
 // Smallest distance to the edge on the way that `velocity` and full braking lead to from `start`.
 double room_on_the_way_m(const Situation& situation, const Vec2d& start, const Vec2d& velocity) {
     const double speed = velocity.norm();
@@ -107,15 +120,16 @@ Vec2d ghost_ball_m(const Situation& situation, const SeenBall& target, double st
     return target.position_m - outward * (situation.own.radius_m + target.radius_m + standoff_m);
 }
 
-Intent kept_on_platform(const Situation& situation, const Intent& intent, double hold_s) {
-    const SeenBall& own = situation.own;
-    const double a = acceleration_mps2(situation);
-    Vec2d velocity = own.velocity_mps + intent.thrust * (a * hold_s);
-    if (intent.dash) velocity += unit_or_zero(intent.thrust) * situation.stats.dash_speed_mps;
-    const Vec2d mean_velocity = (own.velocity_mps + velocity) / 2.0;
-    const Vec2d position = own.position_m + mean_velocity * hold_s;
-    if (room_on_the_way_m(situation, position, velocity) >= kEdgeMarginM) return intent;
+bool leaves_room(const Situation& situation, const Intent& intent, double hold_s) {
+    const Motion then = after(situation, intent, hold_s);
+    return room_on_the_way_m(situation, then.position_m, then.velocity_mps) >= kEdgeMarginM;
+}
 
+Intent kept_on_platform(const Situation& situation, const Intent& intent, double hold_s) {
+    if (leaves_room(situation, intent, hold_s)) return intent;
+
+    const SeenBall& own = situation.own;
+    const Vec2d position = after(situation, intent, hold_s).position_m;
     const Vec2d edge = physics::nearest_edge_point_m(*situation.platform, position);
     const bool is_off = physics::distance_to_edge_m(*situation.platform, position) < 0.0;
     const Vec2d inward = unit_or_zero(is_off ? edge - position : position - edge);

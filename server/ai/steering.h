@@ -21,8 +21,10 @@ Intent rest(const Situation& situation);
 // where the surfaces touch; `standoff_m` further away from the target.
 physics::Vec2d ghost_ball_m(const Situation& situation, const SeenBall& target, double standoff_m);
 
-// The intent itself when holding it for `hold_s` leaves room to stop before the edge (v^2 / 2a
-// against the distance along the way); otherwise braking and steering back.
+// Whether holding it for `hold_s` leaves room to stop before the edge: v^2 / 2a against the
+// distance along the way.
+bool leaves_room(const Situation& situation, const Intent& intent, double hold_s);
+// The intent itself when it leaves room; otherwise braking and steering back.
 Intent kept_on_platform(const Situation& situation, const Intent& intent, double hold_s);
 
 }  // namespace fts::server::ai

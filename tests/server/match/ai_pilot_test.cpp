@@ -1,3 +1,4 @@
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -67,14 +68,62 @@ TEST(Pilot, holds_its_decision_until_the_next_one) {
         memory.remember({seen(1, {0.0, 0.0}, false), seen(2, {6.0, 0.0}, true)});
         game::InputCommand last;
         int changed_at = -1000;
-        for (int tick = 0; tick < 300; ++tick) {
+        for (int tick = 0; tick < 60 * 60; ++tick) {
             const auto command = pilot.command(1, game::stats_for({}), kPlatforms[0], memory);
             if (command == last) continue;
             EXPECT_GE(tick - changed_at, ticks_of_ms(skill_of(difficulty).decides_every_ms));
             changed_at = tick;
             last = command;
         }
-        EXPECT_GT(changed_at, 200) << "aim noise should change every decision a little";
+        EXPECT_GT(changed_at, 60 * 30) << "it should aim anew now and then";
+    }
+}
+
+TEST(Pilot, keeps_to_what_it_does_while_it_wants_nearly_the_same) {
+    for (int i = 0; i <= static_cast<int>(Difficulty::kExpert); ++i) {
+        const auto difficulty = static_cast<Difficulty>(i);
+        const Skill& skill = skill_of(difficulty);
+        // How often it changes its mind in a minute after a player who keeps turning.
+        const auto changes = [&](double turning_deg_per_s) {
+            Pilot pilot(Behaviour::kBruiser, difficulty, 3);
+            Memory memory;
+            game::InputCommand last;
+            int count = 0;
+            for (int tick = 0; tick < 60 * 60; ++tick) {
+                const double angle = turning_deg_per_s * tick / 60.0 * 3.14159265 / 180.0;
+                const Vec2d player = Vec2d(std::cos(angle), std::sin(angle)) * 6.0;
+                memory.remember({seen(1, {0.0, 0.0}, false), seen(2, player, true)});
+                const auto command = pilot.command(1, game::stats_for({}), kPlatforms[0], memory);
+                count += command == last ? 0 : 1;
+                last = command;
+            }
+            return count;
+        };
+        EXPECT_LE(changes(0.0), 61);
+        EXPECT_GT(changes(0.0), 6);
+        EXPECT_LE(changes(0.5 * skill.aim_noise_deg), 61);
+        EXPECT_GT(changes(20.0 * skill.aim_noise_deg), 120);
+    }
+}
+
+TEST(Pilot, steers_in_no_more_directions_than_its_aim_can_tell_apart) {
+    for (int i = 0; i <= static_cast<int>(Difficulty::kExpert); ++i) {
+        const auto difficulty = static_cast<Difficulty>(i);
+        Pilot pilot(Behaviour::kBruiser, difficulty, 8);
+        Memory memory;
+        std::set<std::pair<int, int>> directions;
+        for (int tick = 0; tick < 60 * 600; ++tick) {
+            const Vec2d player = Vec2d(std::cos(0.01 * tick), std::sin(0.01 * tick)) * 6.0;
+            memory.remember({seen(1, {0.0, 0.0}, false), seen(2, player, true)});
+            const auto command = pilot.command(1, game::stats_for({}), kPlatforms[0], memory);
+            if (command != game::InputCommand{}) {
+                directions.insert({command.thrust_x, command.thrust_y});
+            }
+        }
+        const double apart_deg = 360.0 / static_cast<double>(directions.size());
+        EXPECT_LE(apart_deg, 2.0 * skill_of(difficulty).aim_noise_deg);
+        EXPECT_GT(apart_deg, 0.9 * skill_of(difficulty).aim_noise_deg);
+        for (const auto& [x, y] : directions) EXPECT_TRUE(directions.contains({-y, x}));
     }
 }
 
