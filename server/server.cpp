@@ -240,6 +240,15 @@ void Server::say_what_is_wrong(double now_s) {
         world_overruns_noticed_ = world_overruns_;
         last_world_overrun_notice_s_ = now_s;
     }
+    // Once: strangers choose what they send.
+    const auto foreign_version = listener_.last_foreign_version();
+    if (foreign_version && !has_noticed_foreign_version_) {
+        log_(LogLevel::kWarning,
+             "refused a client of protocol version " + std::to_string(*foreign_version) +
+                 ", where this server speaks version " + std::to_string(net::kProtocolVersion) +
+                 "; update the older one");
+        has_noticed_foreign_version_ = true;
+    }
 }
 
 std::size_t Server::player_count() const {

@@ -182,6 +182,7 @@ class Server {
     std::uint64_t store_failures_ = 0;
     std::size_t unwritten_ = 0;
     std::optional<double> last_world_overrun_notice_s_;
+    bool has_noticed_foreign_version_ = false;
     std::uint64_t world_overruns_ = 0, world_overruns_noticed_ = 0;
     std::map<std::string_view, std::uint64_t> drops_;
 };

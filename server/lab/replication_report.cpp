@@ -53,8 +53,8 @@ std::string command_of(const ReplicationRequest& request) {
 std::string table_of(const ReplicationRequest& request, const ReplicationStudy& study) {
     const bool some_of_nothing = std::any_of(study.rows.begin(), study.rows.end(),
                                              [](const CoderRow& row) { return row.keyframes > 0; });
-    std::vector<std::string> heads{"coder",     "bits/ball", "bytes",   "datagrams", "usable",
-                                   "encode us", "decode us", "damaged", "shown"};
+    std::vector<std::string> heads{"coder",     "bits/ball", "bytes",     "datagrams", "usable",
+                                   "encode us", "baselines", "decode us", "damaged",   "shown"};
     if (some_of_nothing) heads.emplace_back("of nothing");
     TextTable table(std::move(heads));
     for (const CoderRow& row : study.rows) {
@@ -64,6 +64,7 @@ std::string table_of(const ReplicationRequest& request, const ReplicationStudy& 
                                        fmt::format("{:.2f}", row.datagrams),
                                        fmt::format("{:.1f} %", 100.0 * row.usable),
                                        fmt::format("{:.1f}", row.encode_us),
+                                       fmt::format("{:.1f}", row.baselines),
                                        fmt::format("{:.0f}", row.decode_us),
                                        std::to_string(row.damaged),
                                        std::to_string(row.damaged_shown)};
@@ -74,8 +75,10 @@ std::string table_of(const ReplicationRequest& request, const ReplicationStudy& 
     out += fmt::format(
         "  bits/ball  of a snapshot, all headers of the format included\n"
         "  usable     snapshots of which every datagram arrives\n"
-        "  encode us  a client and snapshot, with what is encoded once shared by {} clients\n"
-        "  decode us  a snapshot; both with the prediction, where there is one\n"
+        "  encode us  of the processor, a client and snapshot, with the prediction where there is\n"
+        "             one; what is encoded once for a baseline is shared by {} clients\n"
+        "  baselines  different ones that these clients hold\n"
+        "  decode us  of the processor, a snapshot, with the prediction or the replay\n"
         "  damaged    snapshots with a byte altered or missing, and how many of them were shown\n",
         kStudyClients);
     if (some_of_nothing) {

@@ -39,7 +39,7 @@ struct CoderRow {
     double bytes_per_snapshot = 0.0;
     double datagrams = 0.0;  // a snapshot
     double usable = 0.0;     // part of the snapshots that arrive whole
-    double encode_us = 0.0;  // a client and snapshot
+    double encode_us = 0.0;  // of the processor, a client and snapshot
     double decode_us = 0.0;  // a snapshot
     double baselines = 0.0;  // different ones among all clients, a snapshot
     std::uint64_t decoded = 0;

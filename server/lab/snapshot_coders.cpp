@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/net/connection.h"
 #include "common/replication/arena_replay.h"
+#include "common/replication/delta.h"
 #include "common/replication/predictor.h"
 #include "common/replication/snapshot_codec.h"
+#include "common/replication/wire.h"
 
 namespace fts::lab {
 namespace {
@@ -70,59 +73,86 @@ class ResidualCoder : public SnapshotCoder {
     replication::Steering steering_;
 };
 
-class ControlEventCoder : public SnapshotCoder {
+// What a live match sends (server/snapshot_feed.h): what has happened, or states where nothing is
+// held or too much has happened; a byte says which. The packet around it acknowledges inputs in at
+// most six bytes more.
+class LiveCoder : public SnapshotCoder {
   public:
-    explicit ControlEventCoder(replication::Tick snapshot_ticks)
-        : snapshot_ticks_(snapshot_ticks) {}
+    explicit LiveCoder(replication::Tick snapshot_ticks) : snapshot_ticks_(snapshot_ticks) {}
 
     std::string name() const override { return "ours, control events only"; }
     bool wants_lattice() const override { return true; }
     std::vector<Datagram> encode(std::span<const TraceSnapshot> history) const override {
-        const TraceSnapshot& now = history.back();
-        if (history.size() == 1) {
-            return replication::encode_balls({0, now.tick, {}}, now.balls, kMaxDatagramBytes);
-        }
-        replication::ArenaEvents events;
-        std::vector<ControlEvent>& controls = events.controls;
-        for (const TraceSnapshot& snapshot : history.subspan(1)) {
-            controls.insert(controls.end(), snapshot.events.begin(), snapshot.events.end());
-        }
-        std::stable_sort(controls.begin(), controls.end(), [](const auto& a, const auto& b) {
-            return a.ball != b.ball ? a.ball < b.ball : a.tick < b.tick;
-        });
-        return {replication::encode_events(in_play(history.front()), events, in_play(now))};
+        const Snapshot now = in_play(history.back());
+        if (history.size() == 1) return states({}, now);
+        const Snapshot baseline = in_play(history.front());
+        const Datagram part =
+            replication::encode_events(baseline, events_of(history.subspan(1)), now);
+        if (part.size() > kMaxPartBytes) return states(baseline, now);
+        return {tagged(Kind::kEvents, part)};
     }
     std::optional<std::vector<BallState>> decode(
         const TraceSnapshot* baseline, std::span<const Datagram> payloads) const override {
-        if (baseline == nullptr) return decode_keyframe(payloads);
-        const replication::Snapshot start = in_play(*baseline);
-        const auto part = replication::decode_events(start, payloads.front());
-        if (!part) return std::nullopt;
-        replication::Snapshot outcome =
-            replication::replay(course_, start, part->tick, snapshot_ticks_, part->events);
-        if (replication::outcome_digest_of(outcome) != part->outcome_digest) return std::nullopt;
-        return std::move(outcome.balls);
+        const Snapshot start = baseline == nullptr ? Snapshot{} : in_play(*baseline);
+        if (payloads.front().empty()) return std::nullopt;
+        if (payloads.front().front() == static_cast<std::uint8_t>(Kind::kEvents)) {
+            return replayed(start, payloads.front());
+        }
+        std::vector<BallState> balls;
+        for (const Datagram& payload : payloads) {
+            if (payload.empty() || payload.front() != static_cast<std::uint8_t>(Kind::kStates)) {
+                return std::nullopt;
+            }
+            const auto part = replication::decode_part(start, part_of(payload));
+            if (!part) return std::nullopt;
+            balls.insert(balls.end(), part->balls.begin(), part->balls.end());
+        }
+        return balls;
     }
 
   private:
-    static replication::Snapshot in_play(const TraceSnapshot& shown) {
-        replication::Snapshot snapshot;
+    using Snapshot = replication::Snapshot;
+    using Kind = replication::SnapshotPacket::Kind;
+    static constexpr std::size_t kMaxPartBytes =
+        net::kMaxPayloadBytes - replication::kMaxSnapshotPacketOverheadBytes;
+
+    static Snapshot in_play(const TraceSnapshot& shown) {
+        Snapshot snapshot;
         snapshot.tick = shown.tick;
         snapshot.phase = game::Phase::kPlaying;
         snapshot.balls = shown.balls;
         return snapshot;
     }
-    static std::optional<std::vector<BallState>> decode_keyframe(
-        std::span<const Datagram> payloads) {
-        std::vector<BallState> balls;
-        for (const Datagram& part : payloads) {
-            const auto header = replication::peek_residual_part(part);
-            if (!header) return std::nullopt;
-            const auto more = replication::decode_balls({0, header->tick, {}}, part);
-            if (!more) return std::nullopt;
-            balls.insert(balls.end(), more->begin(), more->end());
+    static replication::ArenaEvents events_of(std::span<const TraceSnapshot> snapshots) {
+        replication::ArenaEvents events;
+        for (const TraceSnapshot& snapshot : snapshots) {
+            events.controls.insert(events.controls.end(), snapshot.events.begin(),
+                                   snapshot.events.end());
         }
-        return balls;
+        std::ranges::stable_sort(events.controls, {}, &ControlEvent::ball);
+        return events;
+    }
+    static Datagram tagged(Kind kind, std::span<const std::uint8_t> part) {
+        Datagram payload{static_cast<std::uint8_t>(kind)};
+        payload.insert(payload.end(), part.begin(), part.end());
+        return payload;
+    }
+    static std::span<const std::uint8_t> part_of(const Datagram& payload) {
+        return std::span(payload).subspan(1);
+    }
+    static std::vector<Datagram> states(const Snapshot& baseline, const Snapshot& now) {
+        std::vector<Datagram> payloads = replication::encode_delta(baseline, now, kMaxPartBytes);
+        for (Datagram& part : payloads) part = tagged(Kind::kStates, part);
+        return payloads;
+    }
+    std::optional<std::vector<BallState>> replayed(const Snapshot& start,
+                                                   const Datagram& payload) const {
+        const auto part = replication::decode_events(start, part_of(payload));
+        if (!part) return std::nullopt;
+        Snapshot outcome =
+            replication::replay(course_, start, part->tick, snapshot_ticks_, part->events);
+        if (replication::outcome_digest_of(outcome) != part->outcome_digest) return std::nullopt;
+        return std::move(outcome.balls);
     }
 
     replication::Course course_ = trace_course();
@@ -147,7 +177,7 @@ std::vector<std::unique_ptr<SnapshotCoder>> all_coders(replication::Tick snapsho
     add("ours, collisions", Foresight::kCollisions);
     add("ours, collisions and controls", Foresight::kControls);
     add("ours, the same on the lattice", Foresight::kControlsOnLattice);
-    coders.push_back(std::make_unique<ControlEventCoder>(snapshot_ticks));
+    coders.push_back(std::make_unique<LiveCoder>(snapshot_ticks));
     return coders;
 }
 

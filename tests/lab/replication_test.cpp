@@ -111,6 +111,32 @@ TEST(ReplicationStudy, shows_what_had_to_be_sent_of_nothing) {
         request, [] { return true; }, [](std::size_t, std::size_t) {});
     EXPECT_GT(study.rows.front().keyframes, 0U);
     EXPECT_THAT(table_of(request, study), HasSubstr("of nothing"));
+    for (const CoderRow& row : study.rows) EXPECT_EQ(row.wrong, 0U) << row.coder;
+}
+
+// As a live match does when more has happened than a datagram holds.
+TEST(ReplicationStudy, tells_states_where_too_much_has_happened) {
+    ReplicationRequest request;
+    request.count = 1500;
+    request.seconds = 12.0;
+    request.rate_hz = 1.0;
+    const CoderRow row = rows_of(request).at("ours, control events only");
+    EXPECT_GT(row.datagrams, 2.0);
+    EXPECT_EQ(row.wrong, 0U);
+}
+
+// Who has lost the same acknowledgements holds the same snapshot.
+TEST(ReplicationStudy, encodes_once_for_all_clients_that_hold_the_same) {
+    ReplicationRequest request;
+    request.count = 20;
+    request.seconds = 12.0;
+    request.loss = 0.0;
+    for (const auto& [name, row] : rows_of(request)) EXPECT_EQ(row.baselines, 1.0) << name;
+    request.loss = 0.05;
+    for (const auto& [name, row] : rows_of(request)) {
+        EXPECT_GT(row.baselines, 1.5) << name;
+        EXPECT_LT(row.baselines, 4.0) << name;
+    }
 }
 
 Ended replication(std::vector<std::string> arguments) {
@@ -131,7 +157,7 @@ TEST(ReplicationCommand, says_everything_to_programs_and_draws_it) {
     ASSERT_EQ(json["rows"].size(), 8U);
     for (const auto& row : json["rows"]) {
         for (const char* key : {"coder", "bits_per_ball", "bytes_per_snapshot", "datagrams",
-                                "usable", "encode_us", "decode_us"}) {
+                                "usable", "encode_us", "decode_us", "baselines"}) {
             EXPECT_TRUE(row.contains(key)) << key;
         }
         EXPECT_EQ(row["wrong"], 0);

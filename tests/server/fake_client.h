@@ -21,10 +21,11 @@ namespace fts::server {
 class FakeClient {
   public:
     FakeClient(net::MemoryNetwork& network, const net::Address& server, std::uint8_t host,
-               const net::KeyPair& key = net::generate_key_pair())
+               const net::KeyPair& key = net::generate_key_pair(),
+               std::uint16_t version = net::kProtocolVersion)
         : key_(key),
           transport_(network, net::address_of(host, 40000)),
-          dialer_({.key = key, .server = server}, transport_) {}
+          dialer_({.key = key, .server = server, .protocol_version = version}, transport_) {}
 
     void update(double now_s) {
         transport_.poll(now_s,

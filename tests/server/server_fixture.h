@@ -50,10 +50,13 @@ class ServerTest : public ::testing::Test {
         start();
     }
 
-    FakeClient& connect(const net::KeyPair& key = net::generate_key_pair()) {
+    FakeClient& dial(const net::KeyPair& key, std::uint16_t version = net::kProtocolVersion) {
         clients.push_back(
-            std::make_unique<FakeClient>(network, server_address_, next_host_++, key));
-        FakeClient& client = *clients.back();
+            std::make_unique<FakeClient>(network, server_address_, next_host_++, key, version));
+        return *clients.back();
+    }
+    FakeClient& connect(const net::KeyPair& key = net::generate_key_pair()) {
+        FakeClient& client = dial(key);
         EXPECT_TRUE(run_until([&] { return client.is_connected(); }));
         return client;
     }

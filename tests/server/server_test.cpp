@@ -30,6 +30,22 @@ TEST_F(ServerTest, welcomes_a_player_and_tells_the_present) {
     EXPECT_EQ(server->player_count(), 1U);
 }
 
+TEST_F(ServerTest, tells_its_host_once_of_clients_of_another_version_and_of_both_versions) {
+    start();
+    constexpr std::uint16_t kBefore = net::kProtocolVersion - 1;
+    for (int i = 0; i < 3; ++i) {
+        const FakeClient& old = dial(net::generate_key_pair(), kBefore);
+        run(0.5);
+        EXPECT_FALSE(old.is_connected());
+    }
+    EXPECT_EQ(dropped("wrong_version"), 3U);
+    const std::string told = "refused a client of protocol version " + std::to_string(kBefore) +
+                             ", where this server speaks version " +
+                             std::to_string(net::kProtocolVersion);
+    EXPECT_EQ(std::ranges::count_if(log, [&](const auto& line) { return line.starts_with(told); }),
+              1);
+}
+
 TEST_F(ServerTest, sends_thirty_snapshots_a_second_to_be_replayed_from_what_the_client_holds) {
     start();
     FakeClient& ada = join("Ada");
