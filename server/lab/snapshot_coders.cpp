@@ -73,9 +73,9 @@ class ResidualCoder : public SnapshotCoder {
     replication::Steering steering_;
 };
 
-// What a live match sends (server/snapshot_feed.h): what has happened, or states where nothing is
-// held or too much has happened; a byte says which. The packet around it acknowledges inputs in at
-// most six bytes more.
+// What a live match sends (server/snapshot_feed.h): what has happened, in steps where it is too
+// much for a datagram, and states to who holds nothing. A byte says which; the packet around it
+// acknowledges inputs in at most six bytes more.
 class LiveCoder : public SnapshotCoder {
   public:
     explicit LiveCoder(replication::Tick snapshot_ticks) : snapshot_ticks_(snapshot_ticks) {}
@@ -83,31 +83,34 @@ class LiveCoder : public SnapshotCoder {
     std::string name() const override { return "ours, control events only"; }
     bool wants_lattice() const override { return true; }
     std::vector<Datagram> encode(std::span<const TraceSnapshot> history) const override {
-        const Snapshot now = in_play(history.back());
-        if (history.size() == 1) return states({}, now);
-        const Snapshot baseline = in_play(history.front());
-        const Datagram part =
-            replication::encode_events(baseline, events_of(history.subspan(1)), now);
-        if (part.size() > kMaxPartBytes) return states(baseline, now);
-        return {tagged(Kind::kEvents, part)};
+        if (history.size() == 1) return keyframe(in_play(history.back()));
+        std::vector<Datagram> payloads;
+        while (history.size() > 1) {
+            std::size_t steps = history.size() - 1;
+            Datagram part = events_to(history.first(steps + 1));
+            while (part.size() > kMaxPartBytes && steps > 1) {
+                steps /= 2;
+                part = events_to(history.first(steps + 1));
+            }
+            history = history.subspan(steps);
+            payloads.push_back(
+                tagged(history.size() == 1 ? Kind::kEvents : Kind::kEarlierEvents, part));
+        }
+        return payloads;
     }
     std::optional<std::vector<BallState>> decode(
         const TraceSnapshot* baseline, std::span<const Datagram> payloads) const override {
-        const Snapshot start = baseline == nullptr ? Snapshot{} : in_play(*baseline);
-        if (payloads.front().empty()) return std::nullopt;
-        if (payloads.front().front() == static_cast<std::uint8_t>(Kind::kEvents)) {
-            return replayed(start, payloads.front());
-        }
-        std::vector<BallState> balls;
+        if (baseline == nullptr) return decode_keyframe(payloads);
+        Snapshot held = in_play(*baseline);
         for (const Datagram& payload : payloads) {
-            if (payload.empty() || payload.front() != static_cast<std::uint8_t>(Kind::kStates)) {
+            const bool is_last = &payload == &payloads.back();
+            if (!is_of(is_last ? Kind::kEvents : Kind::kEarlierEvents, payload))
                 return std::nullopt;
-            }
-            const auto part = replication::decode_part(start, part_of(payload));
-            if (!part) return std::nullopt;
-            balls.insert(balls.end(), part->balls.begin(), part->balls.end());
+            auto next = replayed(held, part_of(payload));
+            if (!next) return std::nullopt;
+            held = std::move(*next);
         }
-        return balls;
+        return std::move(held.balls);
     }
 
   private:
@@ -123,36 +126,52 @@ class LiveCoder : public SnapshotCoder {
         snapshot.balls = shown.balls;
         return snapshot;
     }
-    static replication::ArenaEvents events_of(std::span<const TraceSnapshot> snapshots) {
+    static Datagram events_to(std::span<const TraceSnapshot> history) {
         replication::ArenaEvents events;
-        for (const TraceSnapshot& snapshot : snapshots) {
+        for (const TraceSnapshot& snapshot : history.subspan(1)) {
             events.controls.insert(events.controls.end(), snapshot.events.begin(),
                                    snapshot.events.end());
         }
         std::ranges::stable_sort(events.controls, {}, &ControlEvent::ball);
-        return events;
+        return replication::encode_events(in_play(history.front()), events,
+                                          in_play(history.back()));
     }
     static Datagram tagged(Kind kind, std::span<const std::uint8_t> part) {
         Datagram payload{static_cast<std::uint8_t>(kind)};
         payload.insert(payload.end(), part.begin(), part.end());
         return payload;
     }
+    static bool is_of(Kind kind, const Datagram& payload) {
+        return !payload.empty() && payload.front() == static_cast<std::uint8_t>(kind);
+    }
     static std::span<const std::uint8_t> part_of(const Datagram& payload) {
         return std::span(payload).subspan(1);
     }
-    static std::vector<Datagram> states(const Snapshot& baseline, const Snapshot& now) {
-        std::vector<Datagram> payloads = replication::encode_delta(baseline, now, kMaxPartBytes);
+    static std::vector<Datagram> keyframe(const Snapshot& now) {
+        std::vector<Datagram> payloads =
+            replication::encode_delta({}, now, replication::kMaxKeyframePartBytes);
         for (Datagram& part : payloads) part = tagged(Kind::kStates, part);
         return payloads;
     }
-    std::optional<std::vector<BallState>> replayed(const Snapshot& start,
-                                                   const Datagram& payload) const {
-        const auto part = replication::decode_events(start, part_of(payload));
+    static std::optional<std::vector<BallState>> decode_keyframe(
+        std::span<const Datagram> payloads) {
+        std::vector<BallState> balls;
+        for (const Datagram& payload : payloads) {
+            if (!is_of(Kind::kStates, payload)) return std::nullopt;
+            const auto part = replication::decode_part({}, part_of(payload));
+            if (!part) return std::nullopt;
+            balls.insert(balls.end(), part->balls.begin(), part->balls.end());
+        }
+        return balls;
+    }
+    std::optional<Snapshot> replayed(const Snapshot& held,
+                                     std::span<const std::uint8_t> bytes) const {
+        const auto part = replication::decode_events(held, bytes);
         if (!part) return std::nullopt;
         Snapshot outcome =
-            replication::replay(course_, start, part->tick, snapshot_ticks_, part->events);
+            replication::replay(course_, held, part->tick, snapshot_ticks_, part->events);
         if (replication::outcome_digest_of(outcome) != part->outcome_digest) return std::nullopt;
-        return std::move(outcome.balls);
+        return outcome;
     }
 
     replication::Course course_ = trace_course();

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/lab/replication_study.h"
+#include "server/lab/snapshot_coders.h"
 #include "tests/harness/temp_folder.h"
 #include "tests/lab/program.h"
 
@@ -114,15 +115,20 @@ TEST(ReplicationStudy, shows_what_had_to_be_sent_of_nothing) {
     for (const CoderRow& row : study.rows) EXPECT_EQ(row.wrong, 0U) << row.coder;
 }
 
-// As a live match does when more has happened than a datagram holds.
-TEST(ReplicationStudy, tells_states_where_too_much_has_happened) {
-    ReplicationRequest request;
-    request.count = 1500;
-    request.seconds = 12.0;
-    request.rate_hz = 1.0;
-    const CoderRow row = rows_of(request).at("ours, control events only");
-    EXPECT_GT(row.datagrams, 2.0);
-    EXPECT_EQ(row.wrong, 0U);
+// As a live match does.
+TEST(SnapshotCoders, lead_on_in_steps_where_too_much_has_happened) {
+    std::string error;
+    constexpr replication::Tick kTicks = 30;
+    auto trace = ArenaTrace::make(2000, 1, kTicks, true, error);
+    ASSERT_TRUE(trace) << error;
+    std::vector<TraceSnapshot> history;
+    for (int i = 0; i < 5; ++i) history.push_back(trace->next());
+    const auto coder = std::move(all_coders(kTicks).back());
+    const std::vector<Datagram> payloads = coder->encode(history);
+    ASSERT_GT(payloads.size(), 1U);
+    for (const Datagram& payload : payloads) EXPECT_LE(payload.size(), kMaxDatagramBytes);
+    EXPECT_EQ(coder->decode(&history.front(), payloads), history.back().balls);
+    EXPECT_FALSE(coder->decode(&history.front(), std::span(payloads).first(1)));
 }
 
 // Who has lost the same acknowledgements holds the same snapshot.
