@@ -316,9 +316,10 @@ void Coasting<Scalar>::predict_as(std::uint32_t body) {
 template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::predict_as_seen_as(std::uint32_t sight, std::uint32_t body) {
-    if (!sights_[sight].is_whole) return predict_as<Has>(body);
+    const Sight& seen = sights_[sight];
+    if (!seen.is_whole) return predict_as<Has>(body);
     Meeting best{kNever<double>, kNobody};
-    look_at<Has>(sights_[sight].about, body, Image(), best);
+    look_at<Has>(*seen.about, seen.which, body, Image(), best);
     expect(body, best);
     expect_border<Has>(body);
     enter_in_calendar(body);
@@ -346,15 +347,17 @@ void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best)
     const Flight& self = flights_[body];
     find<Has::kPeriodic>(self, view, [&](std::uint32_t* end, Image image) {
         gather(end, body, kNobody, self.since_s, about_,
-               [&](const Neighbours<Scalar>& about) { look_at<Has>(about, body, image, best); });
+               [&](const Neighbours<Scalar>& about) {
+                   look_at<Has>(about, ~0U, body, image, best);
+               });
     });
 }
 
 // Whom it meets first, if before the best that is known.
 template <typename Scalar>
 template <typename Has>
-void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image,
-                               Meeting& best) {
+void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t which,
+                               std::uint32_t body, Image image, Meeting& best) {
     const Flight& self = flights_[body];
     const Vec shift_m = shift_of(image);
     const auto consider_all = [&](std::uint32_t bits) {
@@ -365,7 +368,7 @@ void Coasting<Scalar>::look_at(const Neighbours<Scalar>& about, std::uint32_t bo
                      image, best);
         }
     };
-    kernels_->look_ahead(about, self, shift_m, now_s_, ahead_);
+    kernels_->look_ahead(about, which, self, shift_m, now_s_, ahead_);
     if (ahead_.first == 0) return;
     const double earliest_s = ahead_.earliest_s[std::countr_zero(ahead_.first)];
     if (earliest_s > best.time_s) return;

@@ -118,14 +118,17 @@ class Coasting {
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
-    // Whether touches(other, separation) is true of anybody but `partner` whose distance to `body`,
-    // now, is below `factor` times their reach. Only of those in the cells about it: `factor` is
-    // hardly more than 1. What is seen is kept for predict_as_seen, as one of the two sights of an
-    // event.
+    // Whether touches(body, other, separation) is true of anybody whose distance to `body`, now, is
+    // below `factor` times their reach. Only of those in the cells about it: `factor` is hardly
+    // more than 1. What is seen is kept for predict_as_seen, as the first of two sights.
     template <typename Touches>
-    bool look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner, Scalar factor,
-                     Touches&& touches);
-    // The same as `predict`, after look_around in this event, in which nothing happened but to the
+    bool look_around(std::uint32_t body, Scalar factor, Touches&& touches) {
+        return look_around(0, body, body, factor, touches);
+    }
+    // The same of each of two that meet; of anybody but them.
+    template <typename Touches>
+    bool look_around_both(std::uint32_t a, std::uint32_t b, Scalar factor, Touches&& touches);
+    // The same as `predict`, after such a look in this event, in which nothing happened but to the
     // body and its partner, who are kept apart.
     void predict_as_seen(std::uint32_t sight, std::uint32_t body) {
         (this->*predict_as_seen_)(sight, body);
@@ -187,8 +190,9 @@ class Coasting {
     };
     // What a body saw about it.
     struct Sight {
-        bool is_whole = false;  // it is all that there is, through no other image
-        Neighbours<Scalar> about;
+        bool is_whole = false;     // it is all that there is, through no other image
+        std::uint32_t which = ~0U;  // a bit for each of those
+        const Neighbours<Scalar>* about = nullptr;
     };
     // Of the nine cells about a body's own, counted from the lowest corner.
     struct View {
@@ -231,9 +235,16 @@ class Coasting {
     template <typename Has>
     void predict_as_seen_as(std::uint32_t sight, std::uint32_t body);
     template <typename Has>
-    void look_at(const Neighbours<Scalar>& about, std::uint32_t body, Image image, Meeting& best);
+    void look_at(const Neighbours<Scalar>& about, std::uint32_t which, std::uint32_t body,
+                 Image image, Meeting& best);
     void consider(const Approach<Scalar>& approach, Scalar reach_m, std::uint32_t body,
                   std::uint32_t other, Image image, Meeting& best) const;
+    template <typename Touches>
+    bool look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner, Scalar factor,
+                     Touches&& touches);
+    template <typename Touches>
+    bool touches_any(const Neighbours<Scalar>& about, std::uint32_t which, std::uint32_t body,
+                     const Vec& shift_m, Scalar factor, Touches&& touches);
     // Calls visit(about) for those in found_ up to `end`, as they are since a moment at which a
     // flight of `body` begins.
     template <typename Visit>
@@ -288,6 +299,7 @@ class Coasting {
     std::vector<std::uint32_t> found_;  // by cells_.find
     Neighbours<Scalar> about_;
     Ahead<Scalar> ahead_;
+    Neighbours<Scalar> seen_[2];
     Sight sights_[2];
     std::vector<Near> near_;
     std::vector<Vec> sample_m_;
@@ -311,25 +323,56 @@ void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
 
 template <typename Scalar>
 template <typename Touches>
+bool Coasting<Scalar>::touches_any(const Neighbours<Scalar>& about, std::uint32_t which,
+                                   std::uint32_t body, const Vec& shift_m, Scalar factor,
+                                   Touches&& touches) {
+    const Vec position = position_m(body);
+    std::uint32_t close =
+        which & kernels_->close(about, position - shift_m, flights_[body].radius_m, factor);
+    for (; close != 0; close &= close - 1) {
+        const std::uint32_t other = about.body[std::countr_zero(close)];
+        if (touches(body, other, Vec((position - position_m(other)) - shift_m))) return true;
+    }
+    return false;
+}
+
+template <typename Scalar>
+template <typename Touches>
 bool Coasting<Scalar>::look_around(std::uint32_t sight, std::uint32_t body, std::uint32_t partner,
                                    Scalar factor, Touches&& touches) {
-    Sight& seen = sights_[sight];
     const Flight& self = flights_[body];
-    const Vec position = position_m(body);
     std::uint32_t looks = 0;
     bool any = false;
     find<true>(self, View(), [&](std::uint32_t* end, Image image) {
-        const Vec shift_m = shift_of(image);
-        gather(end, body, partner, now_s_, seen.about, [&](const Neighbours<Scalar>& about) {
+        gather(end, body, partner, now_s_, seen_[sight], [&](const Neighbours<Scalar>& about) {
             ++looks;
-            std::uint32_t close = kernels_->close(about, position - shift_m, self.radius_m, factor);
-            for (; close != 0 && !any; close &= close - 1) {
-                const std::uint32_t other = about.body[std::countr_zero(close)];
-                any = touches(other, Vec((position - position_m(other)) - shift_m));
-            }
+            any = any || touches_any(about, ~0U, body, shift_of(image), factor, touches);
         });
     });
-    seen.is_whole = looks == 1 && !(model_.periodic && is_at_border(self));
+    const bool is_whole = looks == 1 && !(model_.periodic && is_at_border(self));
+    sights_[sight] = {is_whole, ~0U, &seen_[sight]};
+    return any;
+}
+
+template <typename Scalar>
+template <typename Touches>
+bool Coasting<Scalar>::look_around_both(std::uint32_t a, std::uint32_t b, Scalar factor,
+                                        Touches&& touches) {
+    const Flight &one = flights_[a], &other = flights_[b];
+    typename EventCells<Scalar>::AboutTwo found;
+    if (!(model_.periodic && (is_at_border(one) || is_at_border(other)))) {
+        found = cells_.find_about_two(one.cell, other.cell, found_.data());
+    }
+    if (found.end == nullptr) {
+        return look_around(0, a, b, factor, touches) || look_around(1, b, a, factor, touches);
+    }
+    bool any = false;
+    gather(found.end, a, b, now_s_, seen_[0], [&](const Neighbours<Scalar>& about) {
+        any = touches_any(about, found.about[0], a, Vec::Zero(), factor, touches) ||
+              touches_any(about, found.about[1], b, Vec::Zero(), factor, touches);
+    });
+    sights_[0] = {true, found.about[0], &seen_[0]};
+    sights_[1] = {true, found.about[1], &seen_[0]};
     return any;
 }
 

@@ -36,6 +36,28 @@ std::uint32_t* copy_places(const Cell& cell, std::uint32_t* to) {
 }
 
 #if defined(__x86_64__)
+// The same of rows of cells that two look at, with a bit for each that it sees.
+template <typename Cell, typename Views, typename AboutTwo>
+__attribute__((target("avx512f,avx512vl,avx512dq,bmi2,popcnt"))) AboutTwo copy_rows(
+    const Cell* cells, std::size_t stride, const Views& views, std::uint32_t* to, AboutTwo none) {
+    const auto wanted = static_cast<__mmask16>(views.columns == 3 ? 0x0fff : 0xffff);
+    const __m512i nobody = _mm512_set1_epi32(-1);
+    unsigned lists = 0, count = 0;
+    std::uint64_t one = 0, other = 0;
+    for (std::uint32_t row = 0; row < views.rows; ++row, cells += stride) {
+        const __m512i all = _mm512_maskz_loadu_epi32(wanted, cells);
+        const __mmask16 not_bodies = _mm512_movepi32_mask(all);
+        lists |= _mm512_mask_cmpneq_epi32_mask(not_bodies, all, nobody);
+        const auto bodies = static_cast<__mmask16>(~not_bodies & wanted);
+        _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(bodies, all));
+        one |= std::uint64_t{_pext_u32(views.places[0][row], bodies)} << count;
+        other |= std::uint64_t{_pext_u32(views.places[1][row], bodies)} << count;
+        count += static_cast<unsigned>(std::popcount(static_cast<unsigned>(bodies)));
+    }
+    if (lists != 0 || count > 32) return none;
+    return {to + count, {static_cast<std::uint32_t>(one), static_cast<std::uint32_t>(other)}};
+}
+
 // The same of three cells in each of some rows; nothing, where one of them has a list.
 template <typename Cell>
 __attribute__((target("avx512f,avx512vl,avx512dq,popcnt"))) std::uint32_t* copy_threes(
@@ -181,6 +203,38 @@ std::uint32_t* EventCells<Scalar>::find_in(const Cell* row, std::uint32_t rows,
         }
     }
     return found;
+}
+
+template <typename Scalar>
+auto EventCells<Scalar>::find_about_two(const std::uint32_t* one, const std::uint32_t* other,
+                                        std::uint32_t* found) const -> AboutTwo {
+    const std::uint32_t x = std::min(one[0], other[0]), y = std::min(one[1], other[1]);
+    Views views{std::max(one[0], other[0]) - x + 3, std::max(one[1], other[1]) - y + 3};
+    if (views.columns > 4 || views.rows > 4) return {};
+    for (std::uint32_t row = 0; row < 3; ++row) {
+        views.places[0][one[1] - y + row] = 0x0fffU << kPlaces * (one[0] - x);
+        views.places[1][other[1] - y + row] = 0x0fffU << kPlaces * (other[0] - x);
+    }
+    const Cell* cells = cells_.data() + index_of(x, y);
+#if defined(__x86_64__)
+    if (has_avx512_) return copy_rows(cells, stride_, views, found, AboutTwo());
+#endif
+    AboutTwo all{found};
+    for (std::uint32_t row = 0; row < views.rows; ++row, cells += stride_) {
+        for (std::uint32_t column = 0; column < views.columns; ++column) {
+            if (has_list(cells[column])) return {};
+            const auto before = static_cast<std::uint32_t>(all.end - found);
+            all.end = copy_places(cells[column], all.end);
+            const auto count = static_cast<std::uint32_t>(all.end - found);
+            if (count > kMostAboutTwo) return {};
+            const auto bits = (std::uint64_t{1} << count) - (std::uint64_t{1} << before);
+            for (std::uint32_t i = 0; i < 2; ++i) {
+                const bool sees = (views.places[i][row] >> kPlaces * column & 1U) != 0;
+                if (sees) all.about[i] |= static_cast<std::uint32_t>(bits);
+            }
+        }
+    }
+    return all;
 }
 
 template <typename Scalar>

@@ -57,6 +57,18 @@ class EventCells {
     std::uint32_t* find(std::uint32_t x, std::uint32_t y, std::uint32_t columns, std::uint32_t rows,
                         std::uint32_t* found) const;
 
+    // Those in the cells about two bodies, up to `end`; bit k of about[i] is set where the k-th is
+    // about the i-th of the two. No `end` where they are not in neighbouring cells, or too many are
+    // about them: then they are to be found one by one.
+    struct AboutTwo {
+        std::uint32_t* end = nullptr;
+        std::uint32_t about[2] = {0, 0};
+    };
+    static constexpr std::uint32_t kMostAboutTwo = 32;
+    // Each is in the cell [0], [1], counted as those of `cell_of`.
+    AboutTwo find_about_two(const std::uint32_t* one, const std::uint32_t* other,
+                            std::uint32_t* found) const;
+
     // The cell (x, y), counted as those of `cell_of`, and those about it will be asked for.
     void fetch(std::uint32_t x, std::uint32_t y) const {
         for (std::uint32_t row = 0; row < 3; ++row) {
@@ -96,6 +108,12 @@ class EventCells {
         Scalar cells_per_m = Scalar(0);
         std::uint32_t last = 0;
         Range fitted;
+    };
+
+    // Of up to four rows of four cells, which places two bodies look at.
+    struct Views {
+        std::uint32_t columns, rows;
+        std::uint32_t places[2][4] = {};  // bits, by row
     };
 
     template <std::uint32_t kColumns>

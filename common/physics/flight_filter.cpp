@@ -47,8 +47,9 @@ struct OneByOne {
         return bits;
     }
 
-    static void look_ahead(const Neighbours<Scalar>& about, const Flight<Scalar>& self,
-                           const Vec2<Scalar>& shift_m, double now_s, Ahead<Scalar>& ahead) {
+    static void look_ahead(const Neighbours<Scalar>& about, std::uint32_t which,
+                           const Flight<Scalar>& self, const Vec2<Scalar>& shift_m, double now_s,
+                           Ahead<Scalar>& ahead) {
         ahead.any = 0;
         for (std::uint32_t k = 0; k < about.count; ++k) {
             const Approach<Scalar> way(self, about, k, shift_m);
@@ -59,6 +60,7 @@ struct OneByOne {
             ahead.any |= static_cast<std::uint32_t>(way.rate() < Scalar(0) && !misses) << k;
             ahead.earliest_s[k] = now_s;
         }
+        ahead.any &= which;
         ahead.first = ahead.any;
     }
 

@@ -45,10 +45,11 @@ struct FlightKernels {
     // A bit for each that is nearer to a body than `factor` times their reach.
     std::uint32_t (*close)(const Neighbours<Scalar>& about, const Vec2<Scalar>& position_m,
                            Scalar radius_m, Scalar factor);
-    // Who of those about `self`, shifted by `shift_m`, may meet it. Times are those of
+    // Who of `which` of those about `self`, shifted by `shift_m`, may meet it. Times are those of
     // time_until_contact since the later of two flights began, but not before `now_s`.
-    void (*look_ahead)(const Neighbours<Scalar>& about, const Flight<Scalar>& self,
-                       const Vec2<Scalar>& shift_m, double now_s, Ahead<Scalar>& ahead);
+    void (*look_ahead)(const Neighbours<Scalar>& about, std::uint32_t which,
+                       const Flight<Scalar>& self, const Vec2<Scalar>& shift_m, double now_s,
+                       Ahead<Scalar>& ahead);
     // Who of them may do so up to a time.
     std::uint32_t (*until)(const Ahead<Scalar>& ahead, std::uint32_t count, double time_s);
 };

@@ -30,6 +30,12 @@ struct Avx2Pack {
     static Mask not_above(Mask among, Vector a, Vector b) {
         return _mm256_andnot_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ), among);
     }
+    static Mask of_bits(Mask among, std::uint32_t bits) {
+        const __m256i place = _mm256_setr_epi64x(1, 2, 4, 8);
+        const __m256i all_bits = _mm256_set1_epi64x(static_cast<long long>(bits));
+        const __m256i set = _mm256_cmpeq_epi64(_mm256_and_si256(all_bits, place), place);
+        return _mm256_and_pd(among, _mm256_castsi256_pd(set));
+    }
     static Vector chosen(Mask mask, Vector yes, Vector no) {
         return _mm256_blendv_pd(no, yes, mask);
     }

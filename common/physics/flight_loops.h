@@ -9,6 +9,7 @@
 //     least_of(a)                       of its numbers
 //     below(a, b), at_most(a, b)        a mask: a < b, a <= b
 //     not_above(among, a, b)            of a mask those that do not have a > b
+//     of_bits(among, bits)              of a mask those whose bit is set
 //     chosen(mask, yes, no), bits_of(mask)
 //     not_a_number_at(mask, a)
 //     is_any(bodies, one, other)        a mask, of whole numbers in memory
@@ -162,8 +163,9 @@ struct WideFlights {
         return bits;
     }
 
-    static void look_ahead(const Neighbours<double>& about, const Flight<double>& self,
-                           const Vec2d& shift_m, double now_s, Ahead<double>& ahead) {
+    static void look_ahead(const Neighbours<double>& about, std::uint32_t which,
+                           const Flight<double>& self, const Vec2d& shift_m, double now_s,
+                           Ahead<double>& ahead) {
         const Vector now = Pack::all(now_s), never = Pack::all(kNever<double>);
         const Ways<Pack> ways(numbers_of<Pack>(self), numbers_of<Pack>(shift_m));
         Vector least = never;
@@ -171,9 +173,10 @@ struct WideFlights {
         for (std::uint32_t k = 0; k < about.count; k += Pack::kWidth) {
             const Vector from = Pack::load(about.from_s + k);
             const auto waits = ways.waits(about, k, from, reach(about, k, ways.radius()));
-            ahead.any |= Pack::bits_of(waits.may_meet) << k;
+            const auto may_meet = Pack::of_bits(waits.may_meet, which >> k);
+            ahead.any |= Pack::bits_of(may_meet) << k;
             const Vector time = Pack::max(Pack::add(from, waits.least), now);
-            const Vector earliest = Pack::chosen(waits.may_meet, time, never);
+            const Vector earliest = Pack::chosen(may_meet, time, never);
             least = Pack::min(earliest, least);
             Pack::store(ahead.earliest_s + k, earliest);
         }

@@ -44,7 +44,8 @@ class EventSolver final : public Solver<Scalar> {
 
     void touch(std::uint32_t a, std::uint32_t b, const Vec& separation_m, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
-    bool touches_another(std::uint32_t sight, std::uint32_t body, std::uint32_t partner);
+    bool touch_others(std::uint32_t a, std::uint32_t b);
+    bool touches_any_wall(std::uint32_t body) const;
     bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
     bool touches_wall(std::uint32_t body, std::uint32_t side) const;
     Scalar extent_m(std::uint32_t body) const;
@@ -112,14 +113,11 @@ template <typename Scalar>
 std::uint32_t EventSolver<Scalar>::process(const Due& due) {
     switch (due.what) {
         case Happening::kMeeting:
-            if (touches_another(0, due.body, due.other) ||
-                touches_another(1, due.other, due.body)) {
-                return collide_together(due);
-            }
-            return meet(due.body, due.other);
+            return touch_others(due.body, due.other) ? collide_together(due)
+                                                     : meet(due.body, due.other);
         case Happening::kWall:
-            return touches_another(0, due.body, due.body) ? collide_together(due)
-                                                          : hit_wall(due.body, due.other);
+            return touch_others(due.body, due.body) ? collide_together(due)
+                                                    : hit_wall(due.body, due.other);
         case Happening::kFall:
             return fall(due.body);
         case Happening::kNothing:
@@ -312,19 +310,25 @@ Scalar EventSolver<Scalar>::clock_slack_s(std::uint32_t a, std::uint32_t b) cons
     return static_cast<Scalar>(kClockSlack * slack_s);
 }
 
+// Whether two that meet, or one that hits a wall, touch anything else.
 template <typename Scalar>
-bool EventSolver<Scalar>::touches_another(std::uint32_t sight, std::uint32_t body,
-                                          std::uint32_t partner) {
-    if (body != partner && model_->walls && coasting_.is_at_border(body)) {
-        for (std::uint32_t side = 0; side < 4; ++side) {
-            if (touches_wall(body, side)) return true;
-        }
+bool EventSolver<Scalar>::touch_others(std::uint32_t a, std::uint32_t b) {
+    constexpr Scalar kFactor = static_cast<Scalar>(1.0 + 2.0 * kTouchWithin);
+    const auto touches = [&](std::uint32_t body, std::uint32_t other, const Vec& separation) {
+        return are_touching(body, other, separation);
+    };
+    if (a == b) return coasting_.look_around(a, kFactor, touches);
+    return touches_any_wall(a) || touches_any_wall(b) ||
+           coasting_.look_around_both(a, b, kFactor, touches);
+}
+
+template <typename Scalar>
+bool EventSolver<Scalar>::touches_any_wall(std::uint32_t body) const {
+    if (!model_->walls || !coasting_.is_at_border(body)) return false;
+    for (std::uint32_t side = 0; side < 4; ++side) {
+        if (touches_wall(body, side)) return true;
     }
-    return coasting_.look_around(sight, body, partner,
-                                 static_cast<Scalar>(1.0 + 2.0 * kTouchWithin),
-                                 [&](std::uint32_t other, const Vec& separation) {
-                                     return are_touching(body, other, separation);
-                                 });
+    return false;
 }
 
 template <typename Scalar>
