@@ -6,8 +6,8 @@
 // dynamics simulations", 2007): a ring of buckets, each of them a short stretch of time and an
 // unordered list; what is in the present bucket is kept in order, and in a heap if it is many.
 // Times beyond the ring wait in one more list, which is gone through once in at least half a round.
-// How long a bucket is suits the times that are there at `rebase`, at the first `top` after
-// `reset`, and when the ring has run empty.
+// How long a bucket is suits the times that are there at the first `top` after `reset`, at every
+// so many calls of `rebase`, and when the ring has run empty.
 //
 // Not thread-safe. No allocation but in `reset`.
 #pragma once
@@ -51,23 +51,26 @@ class BucketCalendar {
 
   private:
     // In the list of a bucket, of the far ones, or in none. `before` is a body, or tells the list
-    // that this is the first of.
+    // that this is the first of. After the last one comes nobody(), who has a node as well, so that
+    // links are written without asking.
     struct Node {
         double time_s = 0.0;
         std::uint32_t before = 0;
         std::uint32_t after = 0;
     };
     static_assert(sizeof(Node) == 16);
-    static constexpr std::uint32_t kNobody = 0xffffffff;
     static constexpr std::uint32_t kAmongFew = 0xfffffffe;  // in place of `before`
     static constexpr std::uint32_t kAmongMany = 0xfffffffd;
     static constexpr std::uint32_t kAbsent = 0xfffffffc;
     static constexpr std::uint32_t kFirstOf = 0x80000000;  // a flag: the rest is a bucket
     static constexpr std::uint32_t kMostFew = 24;
     static constexpr std::uint32_t kAhead = 3;
+    static constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
 
     std::int64_t stretch_of(double time_s) const;
     std::uint32_t far() const { return mask_ + 1; }
+    std::uint32_t nobody() const { return static_cast<std::uint32_t>(nodes_.size()) - 1; }
+    bool has_stretches() const { return begin_s_ > kLongAgo; }
     void place(std::uint32_t body);
     void place_now(const Entry& entry);
     void take_out(std::uint32_t body);
@@ -82,7 +85,7 @@ class BucketCalendar {
 
     std::vector<Node> nodes_;              // by body
     std::vector<std::uint32_t> first_;     // by bucket; the last one is of the far ones
-    std::vector<std::uint64_t> occupied_;  // a bit for each bucket
+    std::vector<std::uint64_t> occupied_;  // a bit for each bucket that is not empty, or just was
     std::vector<double> sample_s_;
     // Of the stretch now_ and all before it: the few have the earliest at the end, and are none
     // while there are many.
@@ -94,8 +97,9 @@ class BucketCalendar {
     bool has_gone_on_ = false;
     std::uint32_t entries_ = 0;
     std::uint32_t mask_ = 0;
-    double begin_s_ = 0.0;  // of stretch 0
-    double stretches_per_s_ = 0.0;
+    double begin_s_ = kLongAgo;  // of stretch 0; long ago while there are no stretches
+    double stretches_per_s_ = 1.0;
+    std::uint32_t rebases_to_spread_ = 0;
     std::int64_t now_ = 0;
     std::int64_t nearest_far_ = 0;  // no far one is in an earlier stretch
 };

@@ -127,7 +127,8 @@ void Coasting<Scalar>::break_span() {
 
 template <typename Scalar>
 Vec2<Scalar> Coasting<Scalar>::separation_m(std::uint32_t a, std::uint32_t b) const {
-    Vec apart_m = position_m(a) - position_m(b);
+    const Vec apart_m = position_m(a) - position_m(b);
+    if (!model_.periodic) return apart_m;
     // What is nearer than that has no nearer image.
     const auto is_near = [&](int axis) {
         return std::abs(apart_m[axis]) < Scalar(0.25) * extent_m_[axis];
@@ -346,10 +347,9 @@ template <typename Has>
 void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) {
     const Flight& self = flights_[body];
     find<Has::kPeriodic>(self, view, [&](std::uint32_t* end, Image image) {
-        gather(end, body, kNobody, self.since_s, about_,
-               [&](const Neighbours<Scalar>& about) {
-                   look_at<Has>(about, ~0U, body, image, best);
-               });
+        gather(end, body, kNobody, self.since_s, about_, [&](const Neighbours<Scalar>& about) {
+            look_at<Has>(about, ~0U, body, image, best);
+        });
     });
 }
 
@@ -401,41 +401,44 @@ void Coasting<Scalar>::consider(const Approach<Scalar>& approach, Scalar reach_m
     best = {time_s, other};
 }
 
+// Which way a body goes is anybody's guess, so there are no branches but for walls.
 template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::expect_border(std::uint32_t body) {
     const Flight& flight = flights_[body];
     Prospect& prospect = prospects_[body];
-    prospect.border = Border::kNone;
-    prospect.border_s = kNever<double>;
-    const auto offer = [&](Scalar wait_s, Border border, std::uint32_t side) {
-        const double time_s = std::max(now_s_, flight.since_s + static_cast<double>(wait_s));
-        if (!(time_s < prospect.border_s)) return;
-        prospect.border_s = time_s;
-        prospect.border = border;
-        prospect.side = static_cast<std::uint8_t>(side);
-    };
+    double time_s[2] = {kNever<double>, kNever<double>};
+    Border border[2] = {Border::kNone, Border::kNone};
+    std::uint32_t up[2];
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
-        const Scalar speed = flight.velocity_mps[axis], position = flight.position_m[axis];
-        if (speed == Scalar(0)) continue;
-        const std::uint32_t up = speed > Scalar(0) ? 1 : 0, side = 2 * axis + up;
+        const Scalar speed = flight.velocity_mps[axis];
         const std::uint32_t cell = flight.cell[axis];
-        // As time_until_wall does, without asking for the direction.
-        const auto wait_s = [&](Scalar way_m) {
-            return std::max(Scalar(0), std::copysign(Scalar(1), speed) * way_m) / std::abs(speed);
-        };
-        if (Has::kPeriodic || cell != up * cells_.last(axis)) {
-            offer(wait_s(cells_.edge_m(axis, cell + up) - position), Border::kCell, side);
-        } else if (Has::kWalls && !is_immovable(body) &&
-                   (prospect.sides_kept_off >> side & 1U) == 0) {
-            const Scalar nearest = up == 1 ? model_.walls->max_m[axis] - flight.radius_m
-                                           : model_.walls->min_m[axis] + flight.radius_m;
-            offer(wait_s(nearest - position), Border::kWall, side);
+        up[axis] = speed > Scalar(0) ? 1 : 0;
+        border[axis] = Border::kCell;
+        Scalar edge_m = cells_.edge_m(axis, cell + up[axis]);
+        if (!Has::kPeriodic && cell == up[axis] * cells_.last(axis)) [[unlikely]] {
+            border[axis] =
+                Has::kWalls && has_wall(body, 2 * axis + up[axis]) ? Border::kWall : Border::kNone;
+            if (border[axis] == Border::kNone) continue;
+            edge_m = up[axis] == 1 ? model_.walls->max_m[axis] - flight.radius_m
+                                   : model_.walls->min_m[axis] + flight.radius_m;
         }
+        // As time_until_wall does, without asking for the direction.
+        const Scalar way_m = std::copysign(Scalar(1), speed) * (edge_m - flight.position_m[axis]);
+        const Scalar wait_s = std::max(Scalar(0), way_m) / std::abs(speed);
+        time_s[axis] = speed == Scalar(0) ? kNever<double> : time_after(flight, wait_s);
     }
+    const std::uint32_t axis = time_s[1] < time_s[0] ? 1 : 0;
+    prospect.border_s = time_s[axis];
+    prospect.border = border[axis];
+    prospect.side = static_cast<std::uint8_t>(2 * axis + up[axis]);
     if constexpr (Has::kPlatform) {
-        offer(time_until_edge<Scalar>(*model_.platform, flight.position_m, flight.velocity_mps),
-              Border::kFall, 0);
+        const double fall_s = time_after(
+            flight,
+            time_until_edge<Scalar>(*model_.platform, flight.position_m, flight.velocity_mps));
+        if (!(fall_s < prospect.border_s)) return;
+        prospect.border_s = fall_s;
+        prospect.border = Border::kFall;
     }
 }
 
@@ -444,28 +447,41 @@ template <typename Has>
 void Coasting<Scalar>::cross(std::uint32_t body) {
     Flight& flight = flights_[body];
     const Prospect& prospect = prospects_[body];
-    const std::uint32_t axis = prospect.side / 2;
-    const bool up = prospect.side % 2 == 1;
+    const std::uint32_t axis = prospect.side / 2, up = prospect.side % 2;
     const bool knows_meeting = holds(prospect);
     cells_.take_out(body, flight.cell[0], flight.cell[1]);
-    if (Has::kPeriodic && flight.cell[axis] == (up ? cells_.last(axis) : 0)) {
-        go_round(body, axis, up);
+    if (Has::kPeriodic && flight.cell[axis] == up * cells_.last(axis)) {
+        go_round(body, axis, up == 1);
     } else {
-        up ? ++flight.cell[axis] : --flight.cell[axis];
+        flight.cell[axis] += 2 * up - 1;
     }
     cells_.put_in(body, flight.cell[0], flight.cell[1]);
     if (knows_meeting) {
-        View view;
-        (axis == 0 ? view.x0 : view.y0) = up ? 2 : 0;
-        (axis == 0 ? view.x1 : view.y1) = up ? 2 : 0;
         Meeting best{prospect.meeting_s, prospect.with};
-        look<Has>(body, view, best);
+        look_in_front<Has>(body, axis, up, best);
         expect(body, best);
     } else {
         expect_meeting<Has>(body);
     }
     expect_border<Has>(body);
     enter_in_calendar(body);
+}
+
+// Into the three cells that came into view.
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::look_in_front(std::uint32_t body, std::uint32_t axis, std::uint32_t up,
+                                     Meeting& best) {
+    const Flight& self = flights_[body];
+    if (Has::kPeriodic && is_at_border(self)) {
+        View view;
+        (axis == 0 ? view.x0 : view.y0) = 2 * up;
+        (axis == 0 ? view.x1 : view.y1) = 2 * up;
+        return look<Has>(body, view, best);
+    }
+    gather(cells_.find_three(self.cell, axis, up, found_.data()), body, kNobody, self.since_s,
+           about_,
+           [&](const Neighbours<Scalar>& about) { look_at<Has>(about, ~0U, body, Image(), best); });
 }
 
 template <typename Scalar>

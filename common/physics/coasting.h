@@ -190,7 +190,7 @@ class Coasting {
     };
     // What a body saw about it.
     struct Sight {
-        bool is_whole = false;     // it is all that there is, through no other image
+        bool is_whole = false;      // it is all that there is, through no other image
         std::uint32_t which = ~0U;  // a bit for each of those
         const Neighbours<Scalar>* about = nullptr;
     };
@@ -230,6 +230,12 @@ class Coasting {
     void expect_meeting(std::uint32_t body);
     template <typename Has>
     void expect_border(std::uint32_t body);
+    bool has_wall(std::uint32_t body, std::uint32_t side) const {
+        return !is_immovable(body) && (prospects_[body].sides_kept_off >> side & 1U) == 0;
+    }
+    double time_after(const Flight& flight, Scalar wait_s) const {
+        return std::max(now_s_, flight.since_s + static_cast<double>(wait_s));
+    }
     template <typename Has>
     void look(std::uint32_t body, const View& view, Meeting& best);
     template <typename Has>
@@ -252,6 +258,8 @@ class Coasting {
                 Neighbours<Scalar>& about, Visit&& visit);
     template <typename Has>
     void cross(std::uint32_t body);
+    template <typename Has>
+    void look_in_front(std::uint32_t body, std::uint32_t axis, std::uint32_t up, Meeting& best);
     void expect(std::uint32_t body, const Meeting& meeting);
     void go_round(std::uint32_t body, std::uint32_t axis, bool up);
     bool is_at_border(const Flight& flight) const {

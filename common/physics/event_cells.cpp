@@ -43,19 +43,22 @@ __attribute__((target("avx512f,avx512vl,avx512dq,bmi2,popcnt"))) AboutTwo copy_r
     const auto wanted = static_cast<__mmask16>(views.columns == 3 ? 0x0fff : 0xffff);
     const __m512i nobody = _mm512_set1_epi32(-1);
     unsigned lists = 0, count = 0;
-    std::uint64_t one = 0, other = 0;
+    std::uint64_t seen[2] = {0, 0};
     for (std::uint32_t row = 0; row < views.rows; ++row, cells += stride) {
         const __m512i all = _mm512_maskz_loadu_epi32(wanted, cells);
         const __mmask16 not_bodies = _mm512_movepi32_mask(all);
         lists |= _mm512_mask_cmpneq_epi32_mask(not_bodies, all, nobody);
         const auto bodies = static_cast<__mmask16>(~not_bodies & wanted);
         _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(bodies, all));
-        one |= std::uint64_t{_pext_u32(views.places[0][row], bodies)} << count;
-        other |= std::uint64_t{_pext_u32(views.places[1][row], bodies)} << count;
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const std::uint32_t view = row - views.first_row[i] < 3 ? 0x0fffU : 0;
+            const std::uint32_t places = view << 4 * views.first_column[i];
+            seen[i] |= std::uint64_t{_pext_u32(places, bodies)} << count;
+        }
         count += static_cast<unsigned>(std::popcount(static_cast<unsigned>(bodies)));
     }
     if (lists != 0 || count > 32) return none;
-    return {to + count, {static_cast<std::uint32_t>(one), static_cast<std::uint32_t>(other)}};
+    return {to + count, {static_cast<std::uint32_t>(seen[0]), static_cast<std::uint32_t>(seen[1])}};
 }
 
 // The same of three cells in each of some rows; nothing, where one of them has a list.
@@ -197,11 +200,33 @@ std::uint32_t* EventCells<Scalar>::find_in(const Cell* row, std::uint32_t rows,
         }
         if (!any_list) continue;
         for (std::uint32_t column = 0; column < kColumns; ++column) {
-            if (!has_list(row[column])) continue;
-            std::uint32_t body = row[column].place[kPlaces - 1] & ~kListed;
-            for (; body != kNobody; body = next_[body]) *found++ = body;
+            found = copy_list(row[column], found);
         }
     }
+    return found;
+}
+
+template <typename Scalar>
+std::uint32_t* EventCells<Scalar>::find_three(const std::uint32_t* cell, std::uint32_t axis,
+                                              std::uint32_t up, std::uint32_t* found) const {
+    const std::size_t along = axis == 0 ? 1 : stride_, across = axis == 0 ? stride_ : 1;
+    const Cell* const first = cells_.data() + index_of(cell[0], cell[1]) + 2 * up * along;
+    bool any_list = false;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        found = copy_places(first[i * across], found);
+        any_list |= has_list(first[i * across]);
+    }
+    if (!any_list) [[likely]]
+        return found;
+    for (std::uint32_t i = 0; i < 3; ++i) found = copy_list(first[i * across], found);
+    return found;
+}
+
+template <typename Scalar>
+std::uint32_t* EventCells<Scalar>::copy_list(const Cell& cell, std::uint32_t* found) const {
+    if (!has_list(cell)) return found;
+    std::uint32_t body = cell.place[kPlaces - 1] & ~kListed;
+    for (; body != kNobody; body = next_[body]) *found++ = body;
     return found;
 }
 
@@ -209,29 +234,30 @@ template <typename Scalar>
 auto EventCells<Scalar>::find_about_two(const std::uint32_t* one, const std::uint32_t* other,
                                         std::uint32_t* found) const -> AboutTwo {
     const std::uint32_t x = std::min(one[0], other[0]), y = std::min(one[1], other[1]);
-    Views views{std::max(one[0], other[0]) - x + 3, std::max(one[1], other[1]) - y + 3};
+    const Views views{std::max(one[0], other[0]) - x + 3,
+                      std::max(one[1], other[1]) - y + 3,
+                      {one[0] - x, other[0] - x},
+                      {one[1] - y, other[1] - y}};
     if (views.columns > 4 || views.rows > 4) return {};
-    for (std::uint32_t row = 0; row < 3; ++row) {
-        views.places[0][one[1] - y + row] = 0x0fffU << kPlaces * (one[0] - x);
-        views.places[1][other[1] - y + row] = 0x0fffU << kPlaces * (other[0] - x);
-    }
     const Cell* cells = cells_.data() + index_of(x, y);
 #if defined(__x86_64__)
     if (has_avx512_) return copy_rows(cells, stride_, views, found, AboutTwo());
 #endif
     AboutTwo all{found};
     for (std::uint32_t row = 0; row < views.rows; ++row, cells += stride_) {
+        std::uint64_t before[5] = {};  // of those found, by column; a bit beyond them
+        bool any_list = false;
         for (std::uint32_t column = 0; column < views.columns; ++column) {
-            if (has_list(cells[column])) return {};
-            const auto before = static_cast<std::uint32_t>(all.end - found);
+            before[column] = std::uint64_t{1} << (all.end - found);
             all.end = copy_places(cells[column], all.end);
-            const auto count = static_cast<std::uint32_t>(all.end - found);
-            if (count > kMostAboutTwo) return {};
-            const auto bits = (std::uint64_t{1} << count) - (std::uint64_t{1} << before);
-            for (std::uint32_t i = 0; i < 2; ++i) {
-                const bool sees = (views.places[i][row] >> kPlaces * column & 1U) != 0;
-                if (sees) all.about[i] |= static_cast<std::uint32_t>(bits);
-            }
+            any_list |= has_list(cells[column]);
+        }
+        before[views.columns] = std::uint64_t{1} << (all.end - found);
+        if (any_list || all.end - found > kMostAboutTwo) return {};
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const std::uint32_t column = views.first_column[i];
+            const std::uint64_t bits = before[column + 3] - before[column];
+            if (row - views.first_row[i] < 3) all.about[i] |= static_cast<std::uint32_t>(bits);
         }
     }
     return all;

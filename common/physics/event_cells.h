@@ -57,6 +57,11 @@ class EventCells {
     std::uint32_t* find(std::uint32_t x, std::uint32_t y, std::uint32_t columns, std::uint32_t rows,
                         std::uint32_t* found) const;
 
+    // Those in the three cells that are next to that of a body and the two beside it, up or down
+    // an axis. Returns one past the last.
+    std::uint32_t* find_three(const std::uint32_t* cell, std::uint32_t axis, std::uint32_t up,
+                              std::uint32_t* found) const;
+
     // Those in the cells about two bodies, up to `end`; bit k of about[i] is set where the k-th is
     // about the i-th of the two. No `end` where they are not in neighbouring cells, or too many are
     // about them: then they are to be found one by one.
@@ -110,14 +115,15 @@ class EventCells {
         Range fitted;
     };
 
-    // Of up to four rows of four cells, which places two bodies look at.
+    // The three by three cells about each of two, among those about both.
     struct Views {
         std::uint32_t columns, rows;
-        std::uint32_t places[2][4] = {};  // bits, by row
+        std::uint32_t first_column[2], first_row[2];
     };
 
     template <std::uint32_t kColumns>
     std::uint32_t* find_in(const Cell* row, std::uint32_t rows, std::uint32_t* found) const;
+    std::uint32_t* copy_list(const Cell& cell, std::uint32_t* found) const;
     static bool has_list(const Cell& cell) {
         return cell.place[kPlaces - 1] >= kListed && cell.place[kPlaces - 1] != kNobody;
     }

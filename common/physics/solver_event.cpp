@@ -162,9 +162,8 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
     coasting_.keep_apart(a, b);
-    const std::uint32_t sight_of_a = in_order ? 0 : 1;
-    if (a == due || !coasting_.is_immovable(a)) coasting_.predict_as_seen(sight_of_a, a);
-    if (b == due || !coasting_.is_immovable(b)) coasting_.predict_as_seen(1 - sight_of_a, b);
+    coasting_.predict_as_seen(0, due);
+    if (!coasting_.is_immovable(other)) coasting_.predict_as_seen(1, other);
     return 1;
 }
 
