@@ -316,14 +316,20 @@ void Coasting<Scalar>::predict_as(std::uint32_t body) {
 
 template <typename Scalar>
 template <typename Has>
-void Coasting<Scalar>::predict_as_seen_as(std::uint32_t sight, std::uint32_t body) {
-    const Sight& seen = sights_[sight];
-    if (!seen.is_whole) return predict_as<Has>(body);
+void Coasting<Scalar>::predict_as_seen_as(const std::uint32_t* bodies, std::uint32_t count) {
+    // Step by step for both: what takes long for one is under way while the other is looked at.
+    for (std::uint32_t i = 0; i < count; ++i) expect_as_seen<Has>(sights_[i], bodies[i]);
+    for (std::uint32_t i = 0; i < count; ++i) expect_border<Has>(bodies[i]);
+    for (std::uint32_t i = 0; i < count; ++i) enter_in_calendar(bodies[i]);
+}
+
+template <typename Scalar>
+template <typename Has>
+void Coasting<Scalar>::expect_as_seen(const Sight& seen, std::uint32_t body) {
+    if (!seen.is_whole) return expect_meeting<Has>(body);
     Meeting best{kNever<double>, kNobody};
     look_at<Has>(*seen.about, seen.which, body, Image(), best);
     expect(body, best);
-    expect_border<Has>(body);
-    enter_in_calendar(body);
 }
 
 template <typename Scalar>

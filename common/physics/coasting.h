@@ -128,10 +128,12 @@ class Coasting {
     // The same of each of two that meet; of anybody but them.
     template <typename Touches>
     bool look_around_both(std::uint32_t a, std::uint32_t b, Scalar factor, Touches&& touches);
-    // The same as `predict`, after such a look in this event, in which nothing happened but to the
-    // body and its partner, who are kept apart.
-    void predict_as_seen(std::uint32_t sight, std::uint32_t body) {
-        (this->*predict_as_seen_)(sight, body);
+    // The same as `predict` of one or two, after they looked in this event, in which nothing
+    // happened but to these, who are kept apart.
+    void predict_as_seen(std::uint32_t body) { (this->*predict_as_seen_)(&body, 1); }
+    void predict_as_seen(std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t both[] = {a, b};
+        (this->*predict_as_seen_)(both, 2);
     }
     // Calls visit(other, separation) for every body in the cells about that of `body`, itself
     // included, once for each image, in ascending order of indices; the separation is from that
@@ -239,7 +241,9 @@ class Coasting {
     template <typename Has>
     void look(std::uint32_t body, const View& view, Meeting& best);
     template <typename Has>
-    void predict_as_seen_as(std::uint32_t sight, std::uint32_t body);
+    void predict_as_seen_as(const std::uint32_t* bodies, std::uint32_t count);
+    template <typename Has>
+    void expect_as_seen(const Sight& seen, std::uint32_t body);
     template <typename Has>
     void look_at(const Neighbours<Scalar>& about, std::uint32_t which, std::uint32_t body,
                  Image image, Meeting& best);
@@ -287,7 +291,7 @@ class Coasting {
     std::uint32_t turns_to_rebase_ = 0;
     Due (Coasting::*next_)() = nullptr;
     void (Coasting::*predict_)(std::uint32_t) = nullptr;
-    void (Coasting::*predict_as_seen_)(std::uint32_t, std::uint32_t) = nullptr;
+    void (Coasting::*predict_as_seen_)(const std::uint32_t*, std::uint32_t) = nullptr;
     const FlightKernels<Scalar>* kernels_ = nullptr;
 
     std::vector<Flight> flights_;  // by body, as are the next

@@ -17,10 +17,12 @@ struct Avx2Pack {
     static Vector add(Vector a, Vector b) { return _mm256_add_pd(a, b); }
     static Vector sub(Vector a, Vector b) { return _mm256_sub_pd(a, b); }
     static Vector mul(Vector a, Vector b) { return _mm256_mul_pd(a, b); }
-    static Vector div(Vector a, Vector b) { return _mm256_div_pd(a, b); }
     static Vector min(Vector a, Vector b) { return _mm256_min_pd(a, b); }
     static Vector max(Vector a, Vector b) { return _mm256_max_pd(a, b); }
-    static Vector root(Vector a) { return _mm256_sqrt_pd(a); }
+    static Vector root_above(Vector a) { return _mm256_sqrt_pd(a); }
+    static Vector quotient_below(Vector a, Vector b) {
+        return mul(_mm256_div_pd(a, b), all(1.0 - kQuotientSlack));
+    }
     static double least_of(Vector a) {
         const Vector two = min(a, _mm256_permute2f128_pd(a, a, 1));
         return _mm256_cvtsd_f64(min(two, _mm256_permute_pd(two, 5)));

@@ -5,7 +5,8 @@
 //
 // Pack has kWidth numbers in a Vector, a Mask of them, and
 //
-//     load, store, all, add, sub, mul, div, min, max, root
+//     load, store, all, add, sub, mul, min, max
+//     root_above(a), quotient_below(a, b)  bounds, for a >= 0 and b > 0; or NaN
 //     least_of(a)                       of its numbers
 //     below(a, b), at_most(a, b)        a mask: a < b, a <= b
 //     not_above(among, a, b)            of a mask those that do not have a > b
@@ -103,14 +104,14 @@ class Ways {
         const Vector widest = Pack::mul(reach_squared, speed_squared);
         const Vector chord = Pack::sub(widest, aside_squared);
         const Vector chord_slack = Pack::mul(Pack::all(kChordSlack), widest);
-        const Vector root = Pack::root(Pack::add(Pack::max(chord, zero), chord_slack));
+        const Vector root = Pack::root_above(Pack::add(Pack::max(chord, zero), chord_slack));
         const Vector divisor = Pack::sub(root, rate);
         const Vector distance_squared = sum_of_products<Pack>(dx, dx, dy, dy);
         const Vector gap = Pack::sub(distance_squared, reach_squared);
         const Vector gap_slack =
             Pack::mul(Pack::all(kGapSlack), Pack::add(distance_squared, reach_squared));
-        const Vector wait = Pack::div(Pack::max(Pack::sub(gap, gap_slack), zero), divisor);
-        return {may_meet, Pack::mul(wait, Pack::all(1.0 - kQuotientSlack))};
+        const Vector way = Pack::max(Pack::sub(gap, gap_slack), zero);
+        return {may_meet, Pack::quotient_below(way, divisor)};
     }
 
   private:

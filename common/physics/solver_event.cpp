@@ -162,8 +162,11 @@ std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) 
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
     coasting_.keep_apart(a, b);
-    coasting_.predict_as_seen(0, due);
-    if (!coasting_.is_immovable(other)) coasting_.predict_as_seen(1, other);
+    if (coasting_.is_immovable(other)) {
+        coasting_.predict_as_seen(due);
+    } else {
+        coasting_.predict_as_seen(due, other);
+    }
     return 1;
 }
 
@@ -188,7 +191,7 @@ std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t si
     account(record_->contacts.back(), record_->audit);
     coasting_.set_position(body, position);
     coasting_.turn(body, after);
-    coasting_.predict_as_seen(0, body);
+    coasting_.predict_as_seen(body);
     return 1;
 }
 
