@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "common/physics/calendar.h"
+#include "common/physics/roomy_vector.h"
 
 namespace fts::physics {
 
@@ -83,8 +84,8 @@ class BucketCalendar {
     void spread();
     double suitable_width_s(double first_s);
 
-    std::vector<Node> nodes_;              // by body
-    std::vector<std::uint32_t> first_;     // by bucket; the last one is of the far ones
+    RoomyVector<Node> nodes_;              // by body
+    RoomyVector<std::uint32_t> first_;     // by bucket; the last one is of the far ones
     std::vector<std::uint64_t> occupied_;  // a bit for each bucket that is not empty, or just was
     std::vector<double> sample_s_;
     // Of the stretch now_ and all before it: the few have the earliest at the end, and are none

@@ -34,7 +34,7 @@ void Coasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& 
     apart_.clear();
     free_apart_ = kNobody;
     calendar_.reset(bodies.slots());
-    due_soon_.count = due_next_.count = 0;
+    due_soon_.count = 0;
     found_.resize(bodies.ids.size() + EventCells<Scalar>::kSpare + kGatherSpare);
     body_at_.resize(bodies.slots());
     living_.clear();
@@ -127,7 +127,7 @@ void Coasting<Scalar>::break_span() {
 
 template <typename Scalar>
 Vec2<Scalar> Coasting<Scalar>::separation_m(std::uint32_t a, std::uint32_t b) const {
-    const Vec apart_m = position_m(a) - position_m(b);
+    Vec apart_m = position_m(a) - position_m(b);
     if (!model_.periodic) return apart_m;
     // What is nearer than that has no nearer image.
     const auto is_near = [&](int axis) {
@@ -135,17 +135,6 @@ Vec2<Scalar> Coasting<Scalar>::separation_m(std::uint32_t a, std::uint32_t b) co
     };
     if (is_near(0) && is_near(1)) return apart_m;
     return nearest_image<Scalar>(apart_m, model_.periodic);
-}
-
-template <typename Scalar>
-void Coasting<Scalar>::move_to_now(std::uint32_t body) {
-    set_position(body, position_m(body));
-}
-
-template <typename Scalar>
-void Coasting<Scalar>::set_position(std::uint32_t body, const Vec& position_m) {
-    flights_[body].position_m = position_m;
-    flights_[body].since_s = now_s_;
 }
 
 template <typename Scalar>
@@ -157,11 +146,6 @@ void Coasting<Scalar>::turn(std::uint32_t body, const Vec& velocity_mps) {
     ++flights_[body].events;
     prospects_[body].sides_kept_off = 0;
     forget_apart(body);
-}
-
-template <typename Scalar>
-void Coasting<Scalar>::keep_off_wall(std::uint32_t body, std::uint32_t side) {
-    prospects_[body].sides_kept_off |= static_cast<std::uint8_t>(1U << side);
 }
 
 template <typename Scalar>

@@ -35,6 +35,7 @@
 #include "common/physics/bucket_calendar.h"
 #include "common/physics/event_cells.h"
 #include "common/physics/flight_filter.h"
+#include "common/physics/roomy_vector.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
@@ -103,15 +104,20 @@ class Coasting {
     Vec separation_m(std::uint32_t a, std::uint32_t b) const;
 
     // The body is where it is now, and flies on from there.
-    void move_to_now(std::uint32_t body);
-    void set_position(std::uint32_t body, const Vec& position_m);
+    void move_to_now(std::uint32_t body) { set_position(body, position_m(body)); }
+    void set_position(std::uint32_t body, const Vec& position_m) {
+        flights_[body].position_m = position_m;
+        flights_[body].since_s = now_s_;
+    }
     // Something happened to the body, which must be moved to now: all that was predicted for it is
     // void, and it is kept apart from nobody. It must be predicted before the next `next`. An
     // immovable body flies on as if nothing had happened.
     void turn(std::uint32_t body, const Vec& velocity_mps);
     // To be called after `turn` and before `predict`, of what touches. Not both are immovable.
     void keep_apart(std::uint32_t a, std::uint32_t b);
-    void keep_off_wall(std::uint32_t body, std::uint32_t side);
+    void keep_off_wall(std::uint32_t body, std::uint32_t side) {
+        prospects_[body].sides_kept_off |= static_cast<std::uint8_t>(1U << side);
+    }
     bool is_immovable(std::uint32_t body) const { return std::isinf(prospects_[body].mass_kg); }
     // Whether no cell is beyond that of the body on some side: all that touch a wall are such.
     bool is_at_border(std::uint32_t body) const { return is_at_border(flights_[body]); }
@@ -294,19 +300,19 @@ class Coasting {
     void (Coasting::*predict_as_seen_)(const std::uint32_t*, std::uint32_t) = nullptr;
     const FlightKernels<Scalar>* kernels_ = nullptr;
 
-    std::vector<Flight> flights_;  // by body, as are the next
-    std::vector<Prospect> prospects_;
-    std::vector<std::uint32_t> body_at_;  // by index, as is the calendar
+    RoomyVector<Flight> flights_;  // by body, as are the next
+    RoomyVector<Prospect> prospects_;
+    RoomyVector<std::uint32_t> body_at_;  // by index, as is the calendar
     std::vector<std::uint32_t> living_;   // indices, ascending
     std::uint32_t rebases_to_renumber_ = 0;
     std::vector<InCell> places_;  // by renumber, as are the next
-    std::vector<Flight> old_flights_;
-    std::vector<Prospect> old_prospects_;
+    RoomyVector<Flight> old_flights_;
+    RoomyVector<Prospect> old_prospects_;
     std::vector<std::uint32_t> new_body_;
-    std::vector<Apart> apart_;
+    RoomyVector<Apart> apart_;
     std::uint32_t free_apart_ = kNobody;
     BucketCalendar calendar_;
-    Few due_soon_, due_next_;  // see fetch_upcoming
+    Few due_soon_;  // see fetch_upcoming
     EventCells<Scalar> cells_;
     std::vector<std::uint32_t> found_;  // by cells_.find
     Neighbours<Scalar> about_;
@@ -465,21 +471,15 @@ void Coasting<Scalar>::renumber() {
 }
 
 // Into the cache, one step for each stretch of the calendar: a body that will be due, then whom it
-// meets and the cells about it, then those who are in them.
+// meets and the cells about it.
 template <typename Scalar>
 void Coasting<Scalar>::fetch_upcoming() {
     const auto fetch = [&](std::uint32_t body) {
         __builtin_prefetch(&flights_[body], 1);
         __builtin_prefetch(&prospects_[body], 1);
     };
-    for (std::uint32_t i = 0; i < due_next_.count; ++i) {
-        const auto& cell = flights_[due_next_.body[i]].cell;
-        cells_.for_each_of_few(cell[0], cell[1],
-                               [&](std::uint32_t body) { __builtin_prefetch(&flights_[body]); });
-    }
-    due_next_ = due_soon_;
-    for (std::uint32_t i = 0; i < due_next_.count; ++i) {
-        const std::uint32_t body = due_next_.body[i], with = prospects_[body].with;
+    for (std::uint32_t i = 0; i < due_soon_.count; ++i) {
+        const std::uint32_t body = due_soon_.body[i], with = prospects_[body].with;
         cells_.fetch(flights_[body].cell[0], flights_[body].cell[1]);
         fetch(with == kNobody ? body : with);
     }

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "common/physics/roomy_vector.h"
 #include "common/physics/simd_level.h"
 #include "common/physics/solver.h"
 
@@ -83,19 +84,6 @@ class EventCells {
         }
     }
 
-    // Calls visit(body) with two of those in each of these nine cells; where nobody is, with 0.
-    template <typename Visit>
-    void for_each_of_few(std::uint32_t x, std::uint32_t y, Visit&& visit) const {
-        for (std::uint32_t row = 0; row < 3; ++row) {
-            const Cell* const cell = cells_.data() + index_of(x, y + row);
-            for (std::uint32_t column = 0; column < 3; ++column) {
-                const std::uint32_t first = cell[column].place[0], second = cell[column].place[1];
-                visit(first == kNobody ? 0 : first);
-                visit(second == kNobody ? 0 : second);
-            }
-        }
-    }
-
   private:
     static constexpr std::uint32_t kPlaces = 4;
     // Vacant places hold kNobody, and are the last ones. Where more come together than there are
@@ -136,7 +124,7 @@ class EventCells {
     std::array<Axis, 2> axis_;
     bool has_avx512_ = best_simd_level() >= SimdLevel::kAvx512;
     std::uint32_t stride_ = 3;
-    std::vector<Cell> cells_;
+    RoomyVector<Cell> cells_;
     std::vector<std::uint32_t> next_;  // by body, in such a list
     std::vector<Scalar> scratch_;
 };

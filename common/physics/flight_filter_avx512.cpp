@@ -39,9 +39,7 @@ struct Avx512Pack {
     static Mask not_above(Mask among, Vector a, Vector b) {
         return _mm512_mask_cmp_pd_mask(among, a, b, _CMP_NGT_UQ);
     }
-    static Mask of_bits(Mask among, std::uint32_t bits) {
-        return static_cast<Mask>(among & bits);
-    }
+    static Mask of_bits(Mask among, std::uint32_t bits) { return static_cast<Mask>(among & bits); }
     static Vector chosen(Mask mask, Vector yes, Vector no) {
         return _mm512_mask_blend_pd(mask, no, yes);
     }

@@ -29,6 +29,13 @@ std::vector<Flight<Scalar>> random_flights(std::size_t count, bool equal_radii, 
     return flights;
 }
 
+std::uint32_t some_bits(Dice& dice) {
+    return static_cast<std::uint32_t>(dice.below(std::uint64_t{1} << 32));
+}
+
+// A bound is close that is less than the time by this part.
+constexpr double kCloseBound = 1e-3;
+
 template <typename Scalar>
 class FlightFilter : public testing::Test {};
 using Scalars = testing::Types<double, float>;
@@ -69,7 +76,6 @@ TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
     std::size_t passed_in_all = 0, close_in_all = 0, met_in_all = 0;
-    constexpr double kCloseBound = 1e-3;
     std::size_t timed_in_all = 0, close_bounds_in_all = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         const bool equal_radii = trial % 2 == 0;
@@ -86,8 +92,7 @@ TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_
         plainly.gather(flights.data(), all.data(), count, body, partner, self.since_s, plain);
         const double now_s = dice.between(0.0, 0.3);
         Ahead<Scalar> plain_ahead, ahead;
-        const auto which = static_cast<std::uint32_t>(
-            trial % 5 == 0 ? dice.below(std::uint64_t{1} << 32) : ~std::uint32_t{0});
+        const std::uint32_t which = trial % 5 == 0 ? some_bits(dice) : ~0U;
         plainly.look_ahead(plain, which, self, shift, now_s, plain_ahead);
         ASSERT_EQ(plain_ahead.any & ~which, 0U) << trial;
         const auto close =

@@ -83,7 +83,8 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
      "common/physics/flight_filter_avx512.cpp",
      false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",
-     "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests",
+     "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests "
+     "common/physics/roomy_vector.cpp",
      true},
 });
 
