@@ -1,5 +1,6 @@
 // What a study of replication found: for the terminal, for programs, and as a picture.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,14 @@ std::string notes_of(const ReplicationStudy& study) {
     out += fmt::format("  {} snapshots decoded and compared with the truth, {} of them wrong.\n",
                        decoded, wrong);
     return out;
+}
+
+// There are few, and each has its number.
+void show_whole_decades(Axis& axis, const std::vector<CoderRow>& rows) {
+    const auto [least, most] = std::ranges::minmax_element(rows, {}, &CoderRow::encode_us);
+    if (least == rows.end() || least->encode_us <= 0.0) return;
+    axis.min = std::pow(10.0, std::floor(std::log10(least->encode_us)));
+    axis.max = std::pow(10.0, std::ceil(std::log10(most->encode_us)));
 }
 
 }  // namespace
@@ -127,11 +136,11 @@ std::string json_of(const ReplicationRequest& request, const ReplicationStudy& s
 std::string svg_of(const ReplicationRequest& request, const ReplicationStudy& study) {
     Plot plot;
     plot.title = "What a snapshot costs on the wire";
-    plot.subtitle =
-        setting_text(request) + ". Further left fewer bits, further down less work for the server.";
+    plot.subtitle = setting_text(request) + ". Left: fewer bits; down: less work.";
     plot.footnote = command_of(request);
     plot.x = {"bits a ball and snapshot", Scale::kLog, {}, {}};
     plot.y = {"encoding, us a client and snapshot", Scale::kLog, {}, {}};
+    show_whole_decades(plot.y, study.rows);
     for (const CoderRow& row : study.rows) {
         const bool ours = row.coder.starts_with("ours");
         Series series;
