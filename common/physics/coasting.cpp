@@ -207,6 +207,7 @@ void Coasting<Scalar>::remove(std::uint32_t body) {
     forget_apart(body);
     calendar_.remove(index_of(body));
     ++flights_[body].events;
+    living_at_[body] = kNobody;
     living_.erase(std::lower_bound(living_.begin(), living_.end(), index_of(body)));
 }
 
@@ -251,8 +252,10 @@ void Coasting<Scalar>::rebase() {
 
 template <typename Scalar>
 void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
-    for (const std::uint32_t index : living_) {
-        const Flight& flight = flights_[body_at_[index]];
+    for (std::uint32_t body = 0; body < flights_.size(); ++body) {
+        const std::uint32_t index = living_at_[body];
+        if (index == kNobody) continue;
+        const Flight& flight = flights_[body];
         const Vec position = flight.position_at(now_s_);
         bodies.position_m[index] =
             model_.periodic ? wrapped<Scalar>(position, *model_.periodic) : position;

@@ -302,8 +302,9 @@ class Coasting {
 
     RoomyVector<Flight> flights_;  // by body, as are the next
     RoomyVector<Prospect> prospects_;
-    RoomyVector<std::uint32_t> body_at_;  // by index, as is the calendar
-    std::vector<std::uint32_t> living_;   // indices, ascending
+    RoomyVector<std::uint32_t> body_at_;    // by index, as is the calendar
+    std::vector<std::uint32_t> living_;     // indices, ascending
+    std::vector<std::uint32_t> living_at_;  // the same by body, or kNobody
     std::uint32_t rebases_to_renumber_ = 0;
     std::vector<InCell> places_;  // by renumber, as are the next
     RoomyVector<Flight> old_flights_;
@@ -467,6 +468,8 @@ void Coasting<Scalar>::renumber() {
         std::uint32_t& with = prospects_[body].with;
         if (with != kNobody) with = new_body_[with];
     }
+    living_at_.assign(bodies, kNobody);
+    for (const std::uint32_t index : living_) living_at_[body_at_[index]] = index;
     for (Apart& apart : apart_) apart.other = new_body_[apart.other];
 }
 
