@@ -39,7 +39,7 @@ void Attribution::record(const Hit& hit) {
     assert(hit.victim != hit.actor);
     auto& contacts = victims_[hit.victim].contacts;
     if (contacts.size() == kMaxContacts) {
-        contacts.erase(contacts.begin());
+        contacts.pop_front();
         ++forgotten_early_;
     }
     contacts.push_back({.actor = hit.actor,
@@ -57,9 +57,11 @@ void Attribution::observe(Actor actor, std::uint32_t tick, bool well_inside) {
     if (well_inside && !victim.inside) victim.inside_since = tick;
     victim.inside = well_inside;
     if (!well_inside) return;
-    std::erase_if(victim.contacts, [&](const Contact& contact) {
-        return tick - std::max(contact.tick, victim.inside_since) >= kCalmTicks;
-    });
+    auto& contacts = victim.contacts;
+    while (!contacts.empty() &&
+           tick - std::max(contacts.front().tick, victim.inside_since) >= kCalmTicks) {
+        contacts.pop_front();
+    }
 }
 
 void Attribution::respawned(Actor victim) {
@@ -67,9 +69,12 @@ void Attribution::respawned(Actor victim) {
 }
 
 void Attribution::expire(std::uint32_t now) {
-    for (auto& [actor, victim] : victims_)
-        std::erase_if(victim.contacts,
-                      [now](const Contact& contact) { return now - contact.tick > kExpiryTicks; });
+    for (auto& [actor, victim] : victims_) {
+        auto& contacts = victim.contacts;
+        while (!contacts.empty() && now - contacts.front().tick > kExpiryTicks) {
+            contacts.pop_front();
+        }
+    }
     std::erase_if(victims_, [](const auto& entry) { return entry.second.contacts.empty(); });
 }
 

@@ -34,6 +34,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <vector>
 
@@ -101,7 +102,7 @@ class Attribution {
         bool actor_came = false;
     };
     struct Victim {
-        std::vector<Contact> contacts;  // oldest first
+        std::deque<Contact> contacts;  // oldest first: what is forgotten is at the front
         std::uint32_t inside_since = 0;
         bool inside = false;
     };

@@ -85,7 +85,7 @@ struct Match::Impl {
     }
 
     const game::Level& level() const { return config.levels[level_index]; }
-    Actor actor_of(std::uint16_t ball) const;
+    static Actor actor_of(std::uint16_t id, const Ball& ball);
     ScoreLine& score(PlayerId id) { return scores.at(players.at(id).key); }
     void begin_score(PlayerId id, const Player& player);
     void earn(PlayerId id, int earned);
@@ -129,6 +129,7 @@ struct Match::Impl {
     void tell(PlayerId player, replication::ServerMessage message);
     void tell_all(replication::ServerMessage message);
     void send_due();
+    // `own` is a player's.
     void report_hit(std::uint16_t own, std::uint16_t other, const physics::Contact<double>& contact,
                     bool own_is_a);
     replication::LevelStarted level_started() const;

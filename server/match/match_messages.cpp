@@ -60,9 +60,7 @@ void Match::Impl::send_due() {
 
 void Match::Impl::report_hit(std::uint16_t own, std::uint16_t other,
                              const physics::Contact<double>& contact, bool own_is_a) {
-    const PlayerId id = balls.at(own).player;
-    if (id == 0) return;
-    Player& player = players.at(id);
+    Player& player = players.at(balls.at(own).player);
     if (player.strongest_hit) {
         ++totals.reports_left_out;
         if (player.strongest_hit->impulse_ns >= contact.impulse_ns) return;

@@ -13,9 +13,8 @@ using replication::ArenaChange;
 using replication::BallState;
 using replication::quantise;
 
-Actor Match::Impl::actor_of(std::uint16_t ball) const {
-    const PlayerId player = balls.at(ball).player;
-    return player != 0 ? Actor{player, 0} : Actor{0, ball};
+Actor Match::Impl::actor_of(std::uint16_t id, const Ball& ball) {
+    return ball.player != 0 ? Actor{ball.player, 0} : Actor{0, id};
 }
 
 void Match::Impl::earn(PlayerId id, int earned) {

@@ -77,18 +77,20 @@ void Match::Impl::record_contacts() {
         const std::uint16_t b = arena->id_at(contact.b->index);
         const Vec2d& velocity_a = contact.velocity_a_before_mps;
         const Vec2d& velocity_b = contact.velocity_b_before_mps;
-        const auto full_momentum_ns = [this](std::uint16_t id) {
-            const game::BallStats& stats = balls.at(id).stats;
-            return stats.mass_kg * stats.top_speed_mps;
+        const Ball& ball_a = balls.at(a);
+        const Ball& ball_b = balls.at(b);
+        const Actor actor_a = actor_of(a, ball_a), actor_b = actor_of(b, ball_b);
+        const auto full_momentum_ns = [](const Ball& ball) {
+            return ball.stats.mass_kg * ball.stats.top_speed_mps;
         };
-        attribution.record({actor_of(a), actor_of(b), now, contact.impulse_ns, full_momentum_ns(a),
+        attribution.record({actor_a, actor_b, now, contact.impulse_ns, full_momentum_ns(ball_a),
                             came_at(velocity_b, velocity_a, contact.normal)});
-        attribution.record({actor_of(b), actor_of(a), now, contact.impulse_ns, full_momentum_ns(b),
+        attribution.record({actor_b, actor_a, now, contact.impulse_ns, full_momentum_ns(ball_b),
                             came_at(velocity_a, velocity_b, -contact.normal)});
 
         hits.add(replication::hit_of(contact, now, a, b));
-        report_hit(a, b, contact, true);
-        report_hit(b, a, contact, false);
+        if (ball_a.player != 0) report_hit(a, b, contact, true);
+        if (ball_b.player != 0) report_hit(b, a, contact, false);
     }
 }
 
@@ -101,7 +103,8 @@ void Match::Impl::settle_falls() {
     std::vector<Settled> settled;
     for (const auto& fall : arena->falls()) {
         const std::uint16_t id = arena->id_at(fall.id.index);
-        settled.push_back({id, fall.position_m, attribution.credit(actor_of(id), now)});
+        settled.push_back(
+            {id, fall.position_m, attribution.credit(actor_of(id, balls.at(id)), now)});
     }
     for (const Settled& fall : settled) settle_fall(fall.ball, fall.fallen_at_m, fall.shares);
 }
@@ -171,7 +174,7 @@ void Match::Impl::remember() {
                          .radius_m = seen.radius_m,
                          .mass_kg = seen.mass_kg});
         const double room_m = physics::distance_to_edge_m(level().platform, seen.position_m);
-        attribution.observe(actor_of(id), now, room_m >= well_inside_m);
+        attribution.observe(actor_of(id, ball), now, room_m >= well_inside_m);
     }
     memory.remember(std::move(frame));
     attribution.expire(now);
