@@ -13,6 +13,9 @@ constexpr double kArrivedM = 0.5;
 // Room left at the edge after the stop, and the least distance to it that is not yet an emergency.
 constexpr double kEdgeMarginM = 0.6;
 constexpr int kWaySamples = 8;
+// Who has this much room to the edge stays where it is: were all to go on inwards, a crowd would
+// jam in the middle.
+constexpr double kAtRestM = 8.0;
 
 Vec2d perpendicular(const Vec2d& vector) {
     return {-vector.y(), vector.x()};
@@ -111,7 +114,9 @@ Intent rest(const Situation& situation) {
         const Vec2d outward = unit_or_zero(situation.own.position_m);
         return arrive(situation, outward * (ring->inner_radius_m + ring->outer_radius_m) / 2.0);
     }
-    return arrive(situation, situation.own.position_m / 2.0);
+    const Vec2d place = situation.own.position_m;
+    const double room_m = physics::distance_to_edge_m(*situation.platform, place);
+    return arrive(situation, room_m >= kAtRestM ? place : Vec2d(place / 2.0));
 }
 
 Vec2d ghost_ball_m(const Situation& situation, const SeenBall& target, double standoff_m) {
