@@ -37,6 +37,14 @@ std::optional<double> ratio(const Results& results, const std::string& engine,
     return lab::times_faster_than_chipmunk(results, *result);
 }
 
+std::optional<double> tree_ratio(const Results& results, const std::string& engine,
+                                 const BenchScene& scene) {
+    const BenchResult* const ours = lab::find_result(results, engine, scene);
+    const BenchResult* const tree = lab::find_result(results, "chipmunk-tree", scene);
+    if (ours == nullptr || tree == nullptr) return std::nullopt;
+    return tree->ns_per_ball_tick / ours->ns_per_ball_tick;
+}
+
 // What is in the set and can be run, but has no result.
 bool is_missing(const std::string& set, const Results& results, const BenchCell& cell) {
     const auto is_this = [&](const BenchCell& other) {
@@ -89,6 +97,8 @@ accuracy::Table targets_table(const Results& targets) {
         true, "");
     add("`swept` double at 2 r a tick, times as fast as Chipmunk",
         ratio(targets, "swept-double", fast), 10.0, true, "");
+    add("the same, as Chipmunk comes: with its box tree", tree_ratio(targets, "swept-double", fast),
+        10.0, true, "");
     add("`event` double, collisions", hits_per_s(targets, slow), 2e6, true, " M/s");
     add("`event` double, packing 0.1, collisions",
         hits_per_s(targets, scene_at(10'000, 0.1, kSlow)), 1e6, true, " M/s");
