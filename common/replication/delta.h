@@ -44,9 +44,9 @@ struct PartHeader {
 std::optional<PartHeader> peek_part(std::span<const std::uint8_t> bytes);
 
 // The balls, coins and hits of this part, as a canonical snapshot (every part carries the arena
-// state). Nothing when the bytes are malformed or `baseline` is not the one they were made against
-// (a keyframe wants an empty Snapshot with tick 0). Never asserts, never allocates more than bytes
-// and baseline can justify.
+// state). Nothing when the bytes are malformed or were altered, or `baseline` is not the one they
+// were made against (a keyframe wants an empty Snapshot with tick 0). Never asserts, never
+// allocates more than bytes and baseline can justify.
 std::optional<Snapshot> decode_part(const Snapshot& baseline, std::span<const std::uint8_t> bytes);
 
 // Puts the parts of one tick together as they arrive, in any order; parts that came before are

@@ -265,7 +265,9 @@ void read_range(ByteReader& in, DecodedPart& part) {
 }  // namespace
 
 std::optional<DecodedPart> decode(const Snapshot& baseline, std::span<const std::uint8_t> bytes) {
-    ByteReader in(bytes);
+    const auto said = without_digest(bytes);
+    if (!said) return std::nullopt;
+    ByteReader in(*said);
     const Preamble preamble = read_preamble(in);
     DecodedPart part{.header = preamble.header, .snapshot = {}};
     Snapshot& snapshot = part.snapshot;

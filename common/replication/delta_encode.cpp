@@ -15,7 +15,7 @@ constexpr std::size_t kManyHits = 100'000;
 // A part is closed when the next record does not fit, so at most one record's worth of it is left
 // empty; and, of the parts that are full by their number of hits, there are few.
 constexpr std::size_t kLeastUsedBytes =
-    kAmplePartBytes - kMaxHeaderBytes - kClosingBytes - kMaxBallBytes;
+    kAmplePartBytes - kMaxHeaderBytes - kClosingBytes - kDigestBytes - kMaxBallBytes;
 static_assert((kIds * (kMaxBallBytes + kMaxCoinBytes) + kManyHits * kMaxHitBytes) /
                       kLeastUsedBytes +
                   kManyHits / kMaxHitsPerPart + 1 <=
@@ -290,7 +290,7 @@ std::vector<std::vector<std::uint8_t>> with_headers(const std::vector<PartCutter
         ByteWriter part;
         write_header(part, baseline, current, header, body);
         part.append(body.body);
-        parts.push_back(part.take());
+        parts.push_back(with_digest(part.take()));
         ++header.part;
     }
     return parts;
@@ -299,7 +299,7 @@ std::vector<std::vector<std::uint8_t>> with_headers(const std::vector<PartCutter
 std::vector<std::vector<std::uint8_t>> encode(const Snapshot& baseline, const Snapshot& current,
                                               std::size_t max_part_bytes) {
     const std::uint32_t ticks = current.tick - baseline.tick;
-    PartCutter cutter(max_part_bytes - kMaxHeaderBytes);
+    PartCutter cutter(max_part_bytes - kMaxHeaderBytes - kDigestBytes);
     write_list(cutter, 0, baseline.balls, current.balls, ticks);
     cutter.end_list(kFirstCoinKey);
     write_list(cutter, kFirstCoinKey, baseline.coins, current.coins, ticks);

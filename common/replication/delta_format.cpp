@@ -70,4 +70,23 @@ BallState predicted(const BallState& before, std::uint32_t ticks) {
     return ball;
 }
 
+std::vector<std::uint8_t> with_digest(std::vector<std::uint8_t> bytes) {
+    StateDigest digest;
+    digest.add(bytes);
+    ByteWriter out;
+    out.append(bytes);
+    out.little_endian(digest.value(), kDigestBytes);
+    return out.take();
+}
+
+std::optional<std::span<const std::uint8_t>> without_digest(std::span<const std::uint8_t> part) {
+    if (part.size() < kDigestBytes) return std::nullopt;
+    const auto bytes = part.first(part.size() - kDigestBytes);
+    StateDigest digest;
+    digest.add(bytes);
+    ByteReader in(part.last(kDigestBytes));
+    if (in.little_endian(kDigestBytes) != digest.value()) return std::nullopt;
+    return bytes;
+}
+
 }  // namespace fts::replication::delta_format

@@ -11,6 +11,7 @@
 #include "common/replication/byte_stream.h"
 #include "common/replication/delta.h"
 #include "common/replication/snapshot.h"
+#include "common/replication/state_digest.h"
 
 namespace fts::replication::delta_format {
 
@@ -36,8 +37,9 @@ static_assert(kMaxParts < (std::size_t{1} << (7 * kPartNumberBytes)));
 // Tick, age, flags, part and part count, digest (an arena is smaller), level, end of phase, range.
 inline constexpr std::size_t kMaxHeaderBytes =
     kMaxVarintBytes + 1 + 1 + 2 * kPartNumberBytes + 2 + 2 + kMaxVarintBytes + 2 * kKeyBytes;
-// Two ends of lists and a number of hits.
+// Two ends of lists and a number of hits; then the digest of all that came before.
 inline constexpr std::size_t kClosingBytes = 3;
+inline constexpr std::size_t kDigestBytes = StateDigest::kBytes;
 inline constexpr std::size_t kMaxHitsPerPart = 127;
 
 // The age of a baseline is one byte.
@@ -85,8 +87,8 @@ inline constexpr std::size_t kMaxHitBytes =
     kMaxVarintBytes + 2 * kMaxIdBytes + kMaxPairBytes + kMaxVarintBytes;
 inline constexpr std::size_t kMinHitBytes = 5;
 
-static_assert(kMaxHeaderBytes + kMaxBallBytes + kClosingBytes <= kMinPartBytes);
-static_assert(kMaxHeaderBytes + kMaxHitBytes + kClosingBytes <= kMinPartBytes);
+static_assert(kMaxHeaderBytes + kMaxBallBytes + kClosingBytes + kDigestBytes <= kMinPartBytes);
+static_assert(kMaxHeaderBytes + kMaxHitBytes + kClosingBytes + kDigestBytes <= kMinPartBytes);
 
 // ---- pairs of residuals
 // ----------------------------------------------------------------------------
@@ -124,6 +126,14 @@ inline CoinState predicted(const CoinState& before, std::uint32_t) {
 
 // Tells two baselines of the same tick apart: FNV-1a over 32-bit words, the top 16 bits of 64.
 std::uint16_t digest_of(const Snapshot& snapshot);
+
+// ---- the digest of a part
+// --------------------------------------------------------------------------
+
+// What was altered on the way is not shown, whatever it says.
+std::vector<std::uint8_t> with_digest(std::vector<std::uint8_t> bytes);
+// Nothing when the digest at the end is not that of what comes before it.
+std::optional<std::span<const std::uint8_t>> without_digest(std::span<const std::uint8_t> part);
 
 // ---- a decoded part
 // --------------------------------------------------------------------------------

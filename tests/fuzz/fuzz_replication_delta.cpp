@@ -1,10 +1,11 @@
 // A part against a baseline that has everything in it. The input is a body: the header in front of
-// it, with the right digest, is made here, since a fuzzer would hardly guess it.
+// it and the digest behind it are made here, since a fuzzer would hardly guess them.
 #include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "common/replication/delta.h"
+#include "common/replication/delta_format.h"
 #include "tests/fuzz/target.h"
 
 namespace {
@@ -13,6 +14,7 @@ using fts::replication::BallState;
 using fts::replication::decode_part;
 using fts::replication::encode_delta;
 using fts::replication::Snapshot;
+using fts::replication::delta_format::with_digest;
 
 constexpr std::size_t kHeaderBytes = 5;  // tick, age, flags, digest
 constexpr std::size_t kFlags = 2;
@@ -60,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::uint8_t> part = kHeader;
     part[kFlags] = data[0] & kFlagsOfASinglePart;
     part.insert(part.end(), data + 1, data + size);
-    const auto snapshot = decode_part(kBaseline, part);
+    const auto snapshot = decode_part(kBaseline, with_digest(part));
     if (!snapshot) return 0;
     if (!is_canonical(*snapshot)) std::abort();
     if (snapshot->balls.size() > kBaseline.balls.size() + size) std::abort();

@@ -1,10 +1,10 @@
-// A keyframe's part is any bytes: it decodes to a canonical snapshot that can be sent on unchanged
-// and sketched, or to nothing.
+// A keyframe's part is any bytes with their digest: it decodes to a canonical snapshot that can be
+// sent on unchanged and sketched, or to nothing.
 #include <cstdlib>
-#include <span>
 
 #include "common/replication/arena_sketch.h"
 #include "common/replication/delta.h"
+#include "common/replication/delta_format.h"
 #include "tests/fuzz/target.h"
 
 using fts::replication::ArenaSketch;
@@ -15,9 +15,10 @@ using fts::replication::encode_delta;
 using fts::replication::is_canonical;
 using fts::replication::kAmplePartBytes;
 using fts::replication::Snapshot;
+using fts::replication::delta_format::with_digest;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto snapshot = decode_part(Snapshot{}, std::span(data, size));
+    const auto snapshot = decode_part(Snapshot{}, with_digest({data, data + size}));
     if (!snapshot) return 0;
     if (!is_canonical(*snapshot)) std::abort();
     if (snapshot->balls.size() + snapshot->coins.size() + snapshot->hits.size() > size)

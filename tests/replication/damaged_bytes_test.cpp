@@ -5,17 +5,24 @@
 #include <gtest/gtest.h>
 
 #include "common/replication/delta.h"
+#include "common/replication/delta_format.h"
 #include "common/replication/wire.h"
 #include "tests/replication/random_snapshots.h"
 
 namespace fts::replication {
 namespace {
 
+using delta_format::kDigestBytes;
+using delta_format::with_digest;
 using testing::pick;
 using testing::Rng;
 using testing::SnapshotPair;
 using testing::wild_pair;
 using Bytes = std::vector<std::uint8_t>;
+
+Bytes body_of(const Bytes& part) {
+    return {part.begin(), part.end() - static_cast<std::ptrdiff_t>(kDigestBytes)};
+}
 
 void expect_sound(const Snapshot& baseline, const Bytes& bytes) {
     const auto snapshot = decode_part(baseline, bytes);
@@ -52,7 +59,8 @@ TEST(DamagedPart, WithBytesToSpareIsNothing) {
     EXPECT_FALSE(decode_part(pair.before, part));
 }
 
-TEST(DamagedPart, WithAnyBitFlippedIsSoundOrNothing) {
+// Whoever alters a part can make a digest that goes with it.
+TEST(DamagedPart, WithAnyBitFlippedIsNothingAndWithANewDigestSoundOrNothing) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE(seed);
         Rng rng(seed);
@@ -61,7 +69,9 @@ TEST(DamagedPart, WithAnyBitFlippedIsSoundOrNothing) {
             for (std::size_t bit = 0; bit < 8 * part.size(); ++bit) {
                 const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
                 part[bit / 8] ^= mask;
-                ASSERT_NO_FATAL_FAILURE(expect_sound(pair.before, part)) << bit;
+                ASSERT_FALSE(decode_part(pair.before, part)) << bit;
+                const Bytes again = with_digest(body_of(part));
+                ASSERT_NO_FATAL_FAILURE(expect_sound(pair.before, again)) << bit;
                 part[bit / 8] ^= mask;
             }
         }
@@ -82,13 +92,14 @@ TEST(DamagedPart, WithARandomBodyIsSoundOrNothing) {
         pair.now = pair.before;
         pair.now.hits.clear();
         ++pair.now.tick;
-        Bytes part = encode_delta(pair.before, pair.now, 400).front();
+        Bytes part = body_of(encode_delta(pair.before, pair.now, 400).front());
         ASSERT_TRUE(std::equal(kNothingMore.rbegin(), kNothingMore.rend(), part.rbegin()));
         part.resize(part.size() - kNothingMore.size());
         for (auto more = pick(rng, 0, 12); more > 0; --more) {
             part.push_back(static_cast<std::uint8_t>(pick(rng, 0, 255)));
         }
         part.insert(part.end(), kNothingMore.begin(), kNothingMore.end());
+        part = with_digest(part);
         ASSERT_NO_FATAL_FAILURE(expect_sound(pair.before, part));
         accepted += decode_part(pair.before, part).has_value();
     }
@@ -101,7 +112,7 @@ TEST(DamagedPart, RandomBytesAreSoundOrNothing) {
         Rng rng(seed);
         Bytes bytes(static_cast<std::size_t>(pick(rng, 0, 60)));
         for (auto& byte : bytes) byte = static_cast<std::uint8_t>(rng());
-        ASSERT_NO_FATAL_FAILURE(expect_sound(Snapshot{}, bytes));
+        ASSERT_NO_FATAL_FAILURE(expect_sound(Snapshot{}, with_digest(bytes)));
         decode_client_message(bytes);
         decode_server_message(bytes);
         decode_input_packet(bytes);
@@ -112,9 +123,10 @@ TEST(DamagedPart, RandomBytesAreSoundOrNothing) {
 TEST(DamagedPart, ClaimOfManyHitsIsNotBelieved) {
     Snapshot now;
     now.tick = 9;
-    Bytes part = encode_delta(Snapshot{}, now, 400).front();
+    Bytes part = body_of(encode_delta(Snapshot{}, now, 400).front());
+    ASSERT_TRUE(decode_part(Snapshot{}, with_digest(part)));
     part.back() = 127;
-    EXPECT_FALSE(decode_part(Snapshot{}, part));
+    EXPECT_FALSE(decode_part(Snapshot{}, with_digest(part)));
 }
 
 TEST(DamagedPart, HeaderOutOfItsRangesIsNothing) {

@@ -50,15 +50,16 @@ Snapshot tick_106() {
     return snapshot;
 }
 
-const Bytes kDelta = {0x6a, 0x06, 0x02, 0x09, 0x17,                           // header
-                      0xe7,                                                   // ball 1
-                      0x05, 0x02, 0x02, 0x00, 0x7f, 0x00,                     // ball 2
-                      0xc0,                                                   // ball 5
-                      0xf0, 0x01, 0x22, 0x03, 0x40, 0x00, 0x80, 0x7f,         // ball 7
-                      0x03, 0x80, 0x00, 0x00, 0x01,                           // its body
-                      0xff,                                                   // no more balls
-                      0xc0, 0xff,                                             // coin 4, no more
-                      0x01, 0x01, 0x01, 0x02, 0xb2, 0x84, 0xfd, 0x80, 0x03};  // one hit
+const Bytes kDelta = {0x6a, 0x06, 0x02, 0x09, 0x17,                          // header
+                      0xe7,                                                  // ball 1
+                      0x05, 0x02, 0x02, 0x00, 0x7f, 0x00,                    // ball 2
+                      0xc0,                                                  // ball 5
+                      0xf0, 0x01, 0x22, 0x03, 0x40, 0x00, 0x80, 0x7f,        // ball 7
+                      0x03, 0x80, 0x00, 0x00, 0x01,                          // its body
+                      0xff,                                                  // no more balls
+                      0xc0, 0xff,                                            // coin 4, no more
+                      0x01, 0x01, 0x01, 0x02, 0xb2, 0x84, 0xfd, 0x80, 0x03,  // one hit
+                      0x4e, 0xc7, 0x86, 0x54};                               // digest
 
 TEST(WorkedExample, SnapshotPart) {
     const auto parts = encode_delta(tick_100(), tick_106(), 1100);
