@@ -251,19 +251,6 @@ void Coasting<Scalar>::rebase() {
 }
 
 template <typename Scalar>
-void Coasting<Scalar>::write_to(Bodies<Scalar>& bodies) const {
-    for (std::uint32_t body = 0; body < flights_.size(); ++body) {
-        const std::uint32_t index = living_at_[body];
-        if (index == kNobody) continue;
-        const Flight& flight = flights_[body];
-        const Vec position = flight.position_at(now_s_);
-        bodies.position_m[index] =
-            model_.periodic ? wrapped<Scalar>(position, *model_.periodic) : position;
-        bodies.velocity_mps[index] = flight.velocity_mps;
-    }
-}
-
-template <typename Scalar>
 template <typename Has>
 Due Coasting<Scalar>::next_as() {
     for (;;) {

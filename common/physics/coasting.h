@@ -98,6 +98,9 @@ class Coasting {
     BodyId id_of(std::uint32_t body) const { return prospects_[body].id; }
     std::uint32_t body_at(std::uint32_t index) const { return body_at_[index]; }
     const Flight& flight(std::uint32_t body) const { return flights_[body]; }
+    // In the order of memory: the index of who lives in a place, or nobody.
+    std::uint32_t places() const { return static_cast<std::uint32_t>(flights_.size()); }
+    std::uint32_t living_at(std::uint32_t place) const { return living_at_[place]; }
     Scalar mass_kg(std::uint32_t body) const { return prospects_[body].mass_kg; }
     Vec position_m(std::uint32_t body) const { return flights_[body].position_at(now_s_); }
     // From b, or its nearest image, to a; now.
@@ -146,8 +149,6 @@ class Coasting {
     // image to `body`, now.
     template <typename Visit>
     void for_each_near(std::uint32_t body, Visit&& visit);
-
-    void write_to(Bodies<Scalar>& bodies) const;
 
   private:
     enum class Border : std::uint8_t { kNone, kCell, kWall, kFall };

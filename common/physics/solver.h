@@ -49,10 +49,15 @@ class Solver {
     // nothing that was predicted holds.
     virtual void forget() {}
 
-    // Brings positions and velocities in `bodies` to the end of the last drift. A solver that works
-    // on its own copy does it only when asked, so that a tick in which nothing happens costs
-    // nothing. It never changes what is simulated.
-    virtual void synchronise(Bodies<Scalar>&) {}
+    // Bring what is in `bodies` to the end of the last drift. A solver that works on its own copy
+    // does it only when asked, so that a tick in which nothing happens costs nothing, and who draws
+    // a crowd pays for no velocities. They never change what is simulated.
+    virtual void synchronise_positions(Bodies<Scalar>&) {}
+    virtual void synchronise_velocities(Bodies<Scalar>&) {}
+    void synchronise(Bodies<Scalar>& bodies) {
+        synchronise_positions(bodies);
+        synchronise_velocities(bodies);
+    }
 };
 
 template <typename Scalar>

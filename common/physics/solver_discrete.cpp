@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/physics/boundary.h"
@@ -33,7 +34,8 @@ class DiscreteSolver final : public Solver<Scalar> {
     DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                               Record<Scalar>& record) override;
     void forget() override { forgotten_ = true; }
-    void synchronise(Bodies<Scalar>& bodies) override;
+    void synchronise_positions(Bodies<Scalar>& bodies) override;
+    void synchronise_velocities(Bodies<Scalar>& bodies) override;
 
   private:
     using Vec = Vec2<Scalar>;
@@ -80,7 +82,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     std::uint32_t substeps_;
     const CrowdKernels<Scalar>* kernels_;
     bool forgotten_ = true;
-    bool ahead_ = false;  // of the bodies
+    bool positions_ahead_ = false, velocities_ahead_ = false;  // of the bodies
     std::uint32_t lists_until_order_ = 0;
 
     Bodies<Scalar>* bodies_ = nullptr;
@@ -133,7 +135,7 @@ DriftReport<Scalar> DiscreteSolver<Scalar>::drift(Bodies<Scalar>& bodies,
             std::visit([&](const auto& shape) { drop_who_is_off(shape, time_s); }, *model.platform);
         }
     }
-    ahead_ = true;
+    positions_ahead_ = velocities_ahead_ = true;
     return {events_, false, Scalar(0)};
 }
 
@@ -165,7 +167,7 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
     if (!same_places || !same_radii) near_.fit(discs(), model_->periodic);
     if (!same_bodies || !same_radii) lists_until_order_ = 1;
     forgotten_ = false;
-    ahead_ = false;
+    positions_ahead_ = velocities_ahead_ = false;
 }
 
 // Gives whether they are what they were.
@@ -210,13 +212,17 @@ void DiscreteSolver<Scalar>::take_in_order_of_ids(const Bodies<Scalar>& bodies) 
 }
 
 template <typename Scalar>
-void DiscreteSolver<Scalar>::synchronise(Bodies<Scalar>& bodies) {
-    if (!ahead_) return;
+void DiscreteSolver<Scalar>::synchronise_positions(Bodies<Scalar>& bodies) {
+    if (!std::exchange(positions_ahead_, false)) return;
+    for (std::uint32_t i = 0; i < count(); ++i) bodies.position_m[slot_[i]] = {x_m_[i], y_m_[i]};
+}
+
+template <typename Scalar>
+void DiscreteSolver<Scalar>::synchronise_velocities(Bodies<Scalar>& bodies) {
+    if (!std::exchange(velocities_ahead_, false)) return;
     for (std::uint32_t i = 0; i < count(); ++i) {
-        bodies.position_m[slot_[i]] = {x_m_[i], y_m_[i]};
         bodies.velocity_mps[slot_[i]] = {vx_mps_[i], vy_mps_[i]};
     }
-    ahead_ = false;
 }
 
 // Gives how far the fastest has gone.

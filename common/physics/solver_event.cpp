@@ -26,7 +26,8 @@ class EventSolver final : public Solver<Scalar> {
     DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                               Record<Scalar>& record) override;
     void forget() override { knows_bodies_ = false; }
-    void synchronise(Bodies<Scalar>& bodies) override;
+    void synchronise_positions(Bodies<Scalar>& bodies) override;
+    void synchronise_velocities(Bodies<Scalar>& bodies) override;
 
   private:
     using Vec = Vec2<Scalar>;
@@ -67,7 +68,7 @@ class EventSolver final : public Solver<Scalar> {
     Record<Scalar>* record_ = nullptr;
     Scalar span_s_ = Scalar(0);
     bool knows_bodies_ = false;
-    bool is_shown_ = true;  // Bodies hold the present
+    bool positions_shown_ = true, velocities_shown_ = true;  // Bodies hold the present ones
 
     Coasting<Scalar> coasting_;
     ContactSet<Scalar> together_;
@@ -83,7 +84,7 @@ DriftReport<Scalar> EventSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Mod
     span_s_ = span_s;
     if (!knows_bodies_) coasting_.begin(bodies, model);
     knows_bodies_ = true;
-    is_shown_ = false;
+    positions_shown_ = velocities_shown_ = false;
     DriftReport<Scalar> report;
     const std::uint32_t budget = event_budget(bodies.ids.size());
     coasting_.begin_span(static_cast<double>(span_s), budget * kTurnsPerBudgetedEvent);
@@ -103,10 +104,25 @@ DriftReport<Scalar> EventSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Mod
 }
 
 template <typename Scalar>
-void EventSolver<Scalar>::synchronise(Bodies<Scalar>& bodies) {
-    if (is_shown_) return;
-    coasting_.write_to(bodies);
-    is_shown_ = true;
+void EventSolver<Scalar>::synchronise_positions(Bodies<Scalar>& bodies) {
+    if (std::exchange(positions_shown_, true)) return;
+    for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
+        const std::uint32_t index = coasting_.living_at(body);
+        if (index == Coasting<Scalar>::kNobody) continue;
+        const Vec position = coasting_.position_m(body);
+        bodies.position_m[index] =
+            model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
+    }
+}
+
+template <typename Scalar>
+void EventSolver<Scalar>::synchronise_velocities(Bodies<Scalar>& bodies) {
+    if (std::exchange(velocities_shown_, true)) return;
+    for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
+        const std::uint32_t index = coasting_.living_at(body);
+        if (index == Coasting<Scalar>::kNobody) continue;
+        bodies.velocity_mps[index] = coasting_.flight(body).velocity_mps;
+    }
 }
 
 template <typename Scalar>

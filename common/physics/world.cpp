@@ -73,6 +73,10 @@ struct World<Scalar>::Impl {
         solver->synchronise(bodies);
         return bodies;
     }
+    const Bodies<Scalar>& with_current_positions() {
+        solver->synchronise_positions(bodies);
+        return bodies;
+    }
     // With true velocities.
     Bodies<Scalar>& to_be_changed() {
         changed = true;
@@ -218,6 +222,12 @@ BodyView<Scalar> World<Scalar>::body(BodyId id) const {
 }
 
 template <typename Scalar>
+Vec2<Scalar> World<Scalar>::position_m(BodyId id) const {
+    assert(contains(id));
+    return impl_->with_current_positions().position_m[id.index];
+}
+
+template <typename Scalar>
 void World<Scalar>::set_control(BodyId id, const Control<Scalar>& control) {
     assert(contains(id));
     assert(control.acceleration_mps2.allFinite());
@@ -264,7 +274,7 @@ template <typename Scalar>
 bool World<Scalar>::is_free(const Vec2<Scalar>& position_m, Scalar radius_m) const {
     constexpr Scalar kTolerance =
         std::max(static_cast<Scalar>(kTouchTolerance), 16 * std::numeric_limits<Scalar>::epsilon());
-    const Bodies<Scalar>& all = impl_->current();
+    const Bodies<Scalar>& all = impl_->with_current_positions();
     return std::all_of(all.ids.begin(), all.ids.end(), [&](BodyId id) {
         const Scalar reach = radius_m + all.radius_m[id.index];
         const Vec2<Scalar> separation =
@@ -298,7 +308,7 @@ Vec2d World<Scalar>::momentum_ns() const {
 
 template <typename Scalar>
 double World<Scalar>::deepest_overlap() const {
-    return physics::deepest_overlap(impl_->current(), impl_->model);
+    return physics::deepest_overlap(impl_->with_current_positions(), impl_->model);
 }
 
 template class World<double>;

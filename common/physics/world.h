@@ -54,8 +54,10 @@ class World {
     bool remove(BodyId id);
     bool contains(BodyId id) const;
 
-    // These four expect a living id.
+    // These five expect a living id.
     BodyView<Scalar> body(BodyId id) const;
+    // The body's, alone: a solver with its own copy of a crowd brings no velocities up to date.
+    Vec2<Scalar> position_m(BodyId id) const;
     void set_control(BodyId id, const Control<Scalar>& control);
     void set_mass(BodyId id, Scalar mass_kg);
     void set_velocity(BodyId id, const Vec2<Scalar>& velocity_mps);

@@ -211,5 +211,35 @@ TEST(World, single_precision_collides_the_same_way) {
     EXPECT_FLOAT_EQ(world.body(world.ids()[1]).position_m.x(), 5.0F);
 }
 
+// One is asked for positions alone, another for everything, a third for nothing until the end.
+TEST(World, is_the_same_whatever_it_is_asked_for_on_the_way) {
+    for (const SolverKind kind : {SolverKind::kDiscrete, SolverKind::kSwept, SolverKind::kEvent}) {
+        SCOPED_TRACE(to_string(kind));
+        Scene scene;
+        scene.walls = Walls{Vec2d(-6, -6), Vec2d(6, 6)};
+        for (int i = 0; i < 25; ++i) {
+            scene.bodies.push_back({Vec2d(2.0 * (i % 5) - 4.0, 2.0 * (i / 5) - 4.0),
+                                    Vec2d(3.0 - i % 7, i % 5 - 2.5), 0.5, 1.0 + i % 3});
+        }
+        World<double> looked_at(scene, {kind, 1}), read(scene, {kind, 1}), left(scene, {kind, 1});
+        for (int tick = 0; tick < 120; ++tick) {
+            for (World<double>* world : {&looked_at, &read, &left}) world->step(1.0 / 60.0);
+            for (const BodyId id : read.ids()) {
+                ASSERT_EQ(looked_at.position_m(id), read.body(id).position_m) << tick;
+            }
+            if (tick % 40 != 39) continue;
+            for (const BodyId id : read.ids()) {
+                ASSERT_EQ(looked_at.body(id).velocity_mps, read.body(id).velocity_mps) << tick;
+            }
+            for (World<double>* world : {&looked_at, &read, &left}) {
+                world->set_velocity(world->ids()[3], Vec2d(0.5, -4.0));
+            }
+        }
+        EXPECT_GT(read.audit().ball_collisions, 20U);
+        EXPECT_EQ(looked_at.state_hash(), read.state_hash());
+        EXPECT_EQ(left.state_hash(), read.state_hash());
+    }
+}
+
 }  // namespace
 }  // namespace fts::physics

@@ -29,7 +29,7 @@ class WorldEngine : public Engine {
     // The peers have theirs at hand after every step, and a game reads them.
     void step() override {
         world_.step(tick_s_);
-        if (world_.size() > 0) world_.body(world_.ids().front());
+        if (world_.size() > 0) world_.position_m(world_.ids().front());
     }
 
     BallState ball(std::size_t i) const override {
