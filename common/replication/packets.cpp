@@ -19,7 +19,7 @@ constexpr std::size_t kMaxRun = 32;
 static_assert(kMaxRun == (0x100U >> kRepeatShift));
 
 using Inputs = std::vector<game::InputCommand>;
-using Kind = SnapshotPacket::Kind;
+using PacketKind = SnapshotPacket::Kind;
 
 void write_run(ByteWriter& out, const game::InputCommand& before, const game::InputCommand& input,
                std::size_t run) {
@@ -49,23 +49,23 @@ bool read_run(ByteReader& in, Inputs& inputs) {
     return true;
 }
 
-std::uint8_t tag_of(Kind kind) {
+std::uint8_t tag_of(PacketKind kind) {
     switch (kind) {
-        case Kind::kStates:
+        case PacketKind::kStates:
             return kStatesPacketTag;
-        case Kind::kSomeStates:
+        case PacketKind::kSomeStates:
             return kSomeStatesPacketTag;
-        case Kind::kEvents:
+        case PacketKind::kEvents:
             return kEventsPacketTag;
-        case Kind::kEarlierEvents:
+        case PacketKind::kEarlierEvents:
             return kEarlierEventsPacketTag;
     }
     return 0;
 }
 
-std::optional<Kind> kind_of(std::uint8_t tag) {
-    for (const Kind kind :
-         {Kind::kStates, Kind::kSomeStates, Kind::kEvents, Kind::kEarlierEvents}) {
+std::optional<PacketKind> kind_of(std::uint8_t tag) {
+    for (const PacketKind kind : {PacketKind::kStates, PacketKind::kSomeStates, PacketKind::kEvents,
+                                  PacketKind::kEarlierEvents}) {
         if (tag_of(kind) == tag) return kind;
     }
     return std::nullopt;
@@ -74,7 +74,7 @@ std::optional<Kind> kind_of(std::uint8_t tag) {
 }  // namespace
 
 bool tells_states(SnapshotPacket::Kind kind) {
-    return kind == Kind::kStates || kind == Kind::kSomeStates;
+    return kind == PacketKind::kStates || kind == PacketKind::kSomeStates;
 }
 
 std::vector<std::uint8_t> encode(const InputPacket& packet) {
