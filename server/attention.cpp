@@ -16,17 +16,10 @@ using replication::Tick;
 // Who was never told of has waited this long: so that what is near still comes before what is far.
 constexpr Tick kLongestWaitTicks = 600;
 
-Vec2d place_m(const BallState& ball) {
-    return {ball.x * replication::kPositionStepM, ball.y * replication::kPositionStepM};
-}
-Vec2d velocity_mps(const BallState& ball) {
-    return {ball.vx * replication::kVelocityStepMps, ball.vy * replication::kVelocityStepMps};
-}
-
 std::uint32_t weight_of(const BallState& ball, const BallState& own) {
-    const Vec2d apart_m = place_m(ball) - place_m(own);
+    const Vec2d apart_m = position_of(ball) - position_of(own);
     const double reach_m = (ball.radius + own.radius) * replication::kRadiusStepM;
-    const Vec2d relative_mps = velocity_mps(ball) - velocity_mps(own);
+    const Vec2d relative_mps = velocity_of(ball) - velocity_of(own);
     if (physics::time_until_contact(apart_m, relative_mps, reach_m) <= Attention::kOnCourseS) {
         return Attention::kOnCourseWeight;
     }

@@ -102,7 +102,6 @@ void SnapshotCourier::send_leads(const SnapshotFeed::Coded* lead, SnapshotFeed& 
             return;
         }
         link.send(lead->kind, lead->part);
-        ++sent.packets;
         led_to_tick_ = lead->tick;
         if (lead->tick == now) return;
         lead = feed.lead_on(lead->tick, log);
@@ -133,7 +132,6 @@ void SnapshotCourier::send_most_wanted(const Snapshot& now, std::uint16_t own_pl
         if (parts.size() != 1) continue;
         spend(parts.front().size());
         link.send(Kind::kSomeStates, parts.front());
-        ++sent.packets;
         attention_.told(now.tick, some.balls);
         return;
     }
@@ -158,7 +156,6 @@ void SnapshotCourier::send_keyframe(SnapshotFeed& feed, const EventLog& log, Lin
         }
         if (!link.send_reliable(message)) return;
         ++next_keyframe_part_;
-        ++sent.packets;
     }
 }
 

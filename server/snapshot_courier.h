@@ -41,10 +41,8 @@ class SnapshotCourier {
 
     // The client says that the newest snapshot it holds is of `acked_tick`; 0: that it holds none.
     void acknowledge(replication::Tick acked_tick, replication::Tick newest_tick);
-    replication::Tick held_tick() const { return held_tick_; }
 
     struct Sent {
-        int packets = 0;
         bool over_budget = false;  // something would have been sent if there were more of it
         bool keyframe_begun = false;
         bool keyframe_given_up = false;  // it had become too old to be led on from

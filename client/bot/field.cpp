@@ -7,17 +7,12 @@ namespace {
 
 using replication::dequantise;
 
-physics::Vec2d metres(std::int32_t x, std::int32_t y) {
-    return {dequantise(x, replication::kPositionStepM), dequantise(y, replication::kPositionStepM)};
-}
-
 FieldBall ball_of(const replication::BallState& state, const physics::Platform& platform) {
     FieldBall ball;
     ball.id = state.id;
     ball.player_id = state.player_id;
-    ball.position_m = metres(state.x, state.y);
-    ball.velocity_mps = {dequantise(state.vx, replication::kVelocityStepMps),
-                         dequantise(state.vy, replication::kVelocityStepMps)};
+    ball.position_m = replication::position_of(state);
+    ball.velocity_mps = replication::velocity_of(state);
     ball.radius_m = dequantise(state.radius, replication::kRadiusStepM);
     ball.mass_kg = dequantise(state.mass, replication::kMassStepKg);
     ball.to_edge_m = physics::distance_to_edge_m(platform, ball.position_m);
@@ -38,7 +33,7 @@ Field field_of(const replication::Snapshot& snapshot, const physics::Platform& p
         (is_player ? field.player_balls : field.ai_balls).push_back(ball_of(state, platform));
     }
     for (const replication::CoinState& coin : snapshot.coins) {
-        field.coins.push_back({coin.id, metres(coin.x, coin.y), coin.value_coins});
+        field.coins.push_back({coin.id, replication::place_m(coin.x, coin.y), coin.value_coins});
     }
     return field;
 }

@@ -13,11 +13,6 @@ using replication::Snapshot;
 constexpr std::size_t kLevelsKept = 2;
 constexpr std::size_t kMaxLevelTextBytes = 200;
 
-physics::Vec2d metres(std::int32_t x, std::int32_t y) {
-    return {replication::dequantise(x, replication::kPositionStepM),
-            replication::dequantise(y, replication::kPositionStepM)};
-}
-
 std::vector<replication::PlayerInfo> with_printable_names(
     std::vector<replication::PlayerInfo> players) {
     for (replication::PlayerInfo& player : players) {
@@ -92,18 +87,22 @@ replication::Tick ArenaMirror::newest_tick() const {
     return snapshots_.empty() ? 0 : snapshots_.back()->tick;
 }
 
-const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
+const replication::LevelStarted* ArenaMirror::find_level(int number) const {
     const auto found = std::find_if(levels_.rbegin(), levels_.rend(),
                                     [&](const auto& level) { return level.number == number; });
-    return found == levels_.rend() ? levels_.back() : *found;
+    return found == levels_.rend() ? nullptr : &*found;
+}
+
+const replication::LevelStarted& ArenaMirror::level_numbered(int number) const {
+    const replication::LevelStarted* const level = find_level(number);
+    return level == nullptr ? levels_.back() : *level;
 }
 
 // A server's word; of a platform that makes no sense nothing is known.
 std::optional<replication::Course> ArenaMirror::course_of(int number) const {
-    if (levels_.empty()) return std::nullopt;
-    const replication::LevelStarted& level = level_numbered(number);
-    if (level.number != number) return std::nullopt;
-    replication::Course course = replication::course_of(level.platform, level.solver);
+    const replication::LevelStarted* const level = find_level(number);
+    if (level == nullptr) return std::nullopt;
+    replication::Course course = replication::course_of(level->platform, level->solver);
     if (physics::validate(course.scene)) return std::nullopt;
     course.tick_s = 1.0 / tick_rate_hz_;
     return course;
@@ -130,7 +129,7 @@ View ArenaMirror::view_at(double server_time_s) {
     }
     if (!levels_.empty()) view.level = level_numbered(shown.level);
     for (const replication::CoinState& coin : shown.coins) {
-        view.coins.push_back({coin.id, metres(coin.x, coin.y), coin.value_coins});
+        view.coins.push_back({coin.id, replication::place_m(coin.x, coin.y), coin.value_coins});
     }
     add_balls(view, draw_tick);
     add_hits(view, draw_tick);
@@ -154,9 +153,7 @@ Glance ArenaMirror::glance_at(double server_time_s) {
         pending_hits_.pop_front();
     }
     glance.newest = snapshots_.back();
-    const auto level =
-        std::ranges::find(levels_, int{glance.newest->level}, &replication::LevelStarted::number);
-    if (level != levels_.end()) glance.platform = level->platform;
+    if (const auto* level = find_level(glance.newest->level)) glance.platform = level->platform;
     return glance;
 }
 
@@ -195,7 +192,7 @@ void ArenaMirror::add_balls(View& view, double draw_tick) {
 void ArenaMirror::add_hits(View& view, double draw_tick) {
     while (!pending_hits_.empty() && pending_hits_.front().tick <= draw_tick) {
         const replication::HitState& hit = pending_hits_.front();
-        view.hits.push_back({metres(hit.x, hit.y),
+        view.hits.push_back({replication::place_m(hit.x, hit.y),
                              replication::dequantise(hit.impulse, replication::kImpulseStepNs),
                              hit.a, hit.b});
         pending_hits_.pop_front();

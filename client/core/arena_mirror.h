@@ -49,6 +49,9 @@ class ArenaMirror {
     Glance glance_at(double server_time_s);
 
   private:
+    // The newest of that number; null when there is none.
+    const replication::LevelStarted* find_level(int number) const;
+    // The same, or the newest of all; there is one.
     const replication::LevelStarted& level_numbered(int number) const;
     void drop_before(double draw_tick);
     std::vector<BallPose> poses_at(double draw_tick);

@@ -10,16 +10,6 @@ namespace {
 using replication::BallState;
 using replication::Snapshot;
 
-physics::Vec2d position_of(const BallState& ball) {
-    return {replication::dequantise(ball.x, replication::kPositionStepM),
-            replication::dequantise(ball.y, replication::kPositionStepM)};
-}
-
-physics::Vec2d velocity_of(const BallState& ball) {
-    return {replication::dequantise(ball.vx, replication::kVelocityStepMps),
-            replication::dequantise(ball.vy, replication::kVelocityStepMps)};
-}
-
 BallPose coasting(const BallState& ball, double span_s) {
     const physics::Vec2d velocity_mps = velocity_of(ball);
     return {&ball, position_of(ball) + velocity_mps * span_s, velocity_mps};

@@ -14,19 +14,18 @@ std::int32_t flown(std::int32_t place, std::int32_t velocity, double span_s) {
     return quantise(place * kPositionStepM + moved_m, kPositionStepM);
 }
 
-template <typename Entry>
-Entry* find(std::vector<Entry>& list, std::uint16_t id) {
-    const auto place = std::ranges::lower_bound(list, id, {}, &Entry::id);
-    return place != list.end() && place->id == id ? &*place : nullptr;
+bool has(const std::vector<BallState>& balls, std::uint16_t id) {
+    return std::ranges::binary_search(balls, id, {}, &BallState::id);
 }
 
 template <typename Entry>
 void put(std::vector<Entry>& list, const Entry& entry) {
-    if (Entry* held = find(list, entry.id)) {
-        *held = entry;
-        return;
+    const auto place = std::ranges::lower_bound(list, entry.id, {}, &Entry::id);
+    if (place != list.end() && place->id == entry.id) {
+        *place = entry;
+    } else {
+        list.insert(place, entry);
     }
-    list.insert(std::ranges::lower_bound(list, entry.id, {}, &Entry::id), entry);
 }
 
 }  // namespace
@@ -45,7 +44,7 @@ void ArenaSketch::tell(const Snapshot& part, const Course& course, Tick snapshot
     if (!is_older) move_on(part, course, snapshot_ticks);
     const double span_s = (now_.tick - part.tick) * course.tick_s;
     for (BallState ball : part.balls) {
-        if (is_older && find(now_.balls, ball.id)) continue;
+        if (is_older && has(now_.balls, ball.id)) continue;
         ball.x = flown(ball.x, ball.vx, span_s);
         ball.y = flown(ball.y, ball.vy, span_s);
         put(now_.balls, ball);

@@ -108,22 +108,12 @@ class ChangeCoder {
             unless(at_rest_, *speed, 0, [this](auto value) { return number(value); });
         }
         thrust_.code(coder_, ball);
-        unless(same_body_, ball, body_of(put_before_, ball), [this](BallState different) {
-            body(different);
-            return different;
-        });
+        if (coder_.bit(same_body_, same_body(put_before_, ball))) {
+            take_body(put_before_, ball);
+        } else {
+            body(ball);
+        }
         put_before_ = ball;
-    }
-    static BallState body_of(BallState body, const BallState& motion) {
-        body.id = motion.id;
-        body.x = motion.x;
-        body.y = motion.y;
-        body.vx = motion.vx;
-        body.vy = motion.vy;
-        body.thrust_x = motion.thrust_x;
-        body.thrust_y = motion.thrust_y;
-        body.brake = motion.brake;
-        return body;
     }
     void body(BallState& ball) {
         ball.radius = id(ball.radius);

@@ -66,11 +66,6 @@ void write_body_changes(ByteWriter& out, const BallState& before, const BallStat
     }
 }
 
-bool same_body(const BallState& a, const BallState& b) {
-    return a.radius == b.radius && a.mass == b.mass && a.kind == b.kind &&
-           a.behaviour == b.behaviour && a.player_id == b.player_id && a.handling == b.handling;
-}
-
 void write_changes(ByteWriter& out, const BallState& before, const BallState& now,
                    std::uint32_t ticks) {
     const std::int32_t dvx = wrapping_difference(now.vx, before.vx);

@@ -70,7 +70,7 @@ BallState predicted(const BallState& before, std::uint32_t ticks) {
     return ball;
 }
 
-std::vector<std::uint8_t> with_digest(std::vector<std::uint8_t> bytes) {
+std::vector<std::uint8_t> with_digest(std::span<const std::uint8_t> bytes) {
     StateDigest digest;
     digest.add(bytes);
     ByteWriter out;

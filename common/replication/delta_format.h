@@ -131,7 +131,7 @@ std::uint16_t digest_of(const Snapshot& snapshot);
 // --------------------------------------------------------------------------
 
 // What was altered on the way is not shown, whatever it says.
-std::vector<std::uint8_t> with_digest(std::vector<std::uint8_t> bytes);
+std::vector<std::uint8_t> with_digest(std::span<const std::uint8_t> bytes);
 // Nothing when the digest at the end is not that of what comes before it.
 std::optional<std::span<const std::uint8_t>> without_digest(std::span<const std::uint8_t> part);
 

@@ -41,20 +41,6 @@ Doubt widened(Doubt doubt, double width) {
 
 }  // namespace
 
-bool same_body(const BallState& a, const BallState& b) {
-    return a.radius == b.radius && a.mass == b.mass && a.kind == b.kind &&
-           a.behaviour == b.behaviour && a.player_id == b.player_id && a.handling == b.handling;
-}
-
-void take_body(const BallState& from, BallState& to) {
-    to.radius = from.radius;
-    to.mass = from.mass;
-    to.kind = from.kind;
-    to.behaviour = from.behaviour;
-    to.player_id = from.player_id;
-    to.handling = from.handling;
-}
-
 const Models& Models::priors() {
     static const Models kPriors = [] {
         Models models;

@@ -21,9 +21,6 @@ inline constexpr std::uint8_t kSomeControlChanges = 0x08;
 inline constexpr std::uint8_t kPartOfSeveral = 0x10;
 inline constexpr std::uint8_t kKnownFlags = 0x1F;
 
-bool same_body(const BallState& a, const BallState& b);
-void take_body(const BallState& from, BallState& to);
-
 // Which numbers are alike enough to learn from each other.
 enum ExactKind : std::uint8_t { kMoving, kNewControl, kUnpushed, kPushed, kExactKinds };
 enum SpeedBank : std::uint8_t { kFree, kAcross, kAcrossFar, kAfterFree, kSettled, kSpeedBanks };

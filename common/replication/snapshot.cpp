@@ -27,6 +27,20 @@ bool has_known_enums(const BallState& ball) {
 
 }  // namespace
 
+bool same_body(const BallState& a, const BallState& b) {
+    return a.radius == b.radius && a.mass == b.mass && a.kind == b.kind &&
+           a.behaviour == b.behaviour && a.player_id == b.player_id && a.handling == b.handling;
+}
+
+void take_body(const BallState& from, BallState& to) {
+    to.radius = from.radius;
+    to.mass = from.mass;
+    to.kind = from.kind;
+    to.behaviour = from.behaviour;
+    to.player_id = from.player_id;
+    to.handling = from.handling;
+}
+
 bool is_canonical(const Snapshot& snapshot) {
     return snapshot.phase <= game::Phase::kShop && ascends(snapshot.balls) &&
            ascends(snapshot.coins) && hits_ascend(snapshot.hits) &&
@@ -49,6 +63,18 @@ bool in_range(double value, double step) {
 
 double dequantise(std::int64_t steps, double step) {
     return static_cast<double>(steps) * step;
+}
+
+physics::Vec2d place_m(std::int32_t x, std::int32_t y) {
+    return {dequantise(x, kPositionStepM), dequantise(y, kPositionStepM)};
+}
+
+physics::Vec2d position_of(const BallState& ball) {
+    return place_m(ball.x, ball.y);
+}
+
+physics::Vec2d velocity_of(const BallState& ball) {
+    return {dequantise(ball.vx, kVelocityStepMps), dequantise(ball.vy, kVelocityStepMps)};
 }
 
 }  // namespace fts::replication

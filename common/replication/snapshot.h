@@ -54,6 +54,10 @@ struct BallState {
 enum class BallKind : std::uint8_t { kAi = 0, kPlayer = 1 };
 inline constexpr game::Behaviour kLastBehaviour = game::Behaviour::kBruiser;
 
+// Of all that is neither motion nor control.
+bool same_body(const BallState& a, const BallState& b);
+void take_body(const BallState& from, BallState& to);
+
 struct CoinState {
     std::uint16_t id = 0;
     std::int32_t x = 0, y = 0;
@@ -91,5 +95,10 @@ bool is_canonical(const Snapshot& snapshot);
 std::int32_t quantise(double value, double step);
 bool in_range(double value, double step);
 double dequantise(std::int64_t steps, double step);
+
+// In SI units.
+physics::Vec2d place_m(std::int32_t x, std::int32_t y);
+physics::Vec2d position_of(const BallState& ball);
+physics::Vec2d velocity_of(const BallState& ball);
 
 }  // namespace fts::replication

@@ -115,7 +115,7 @@ std::uint8_t flags_of(Merge merge) {
         } else if (truth == nullptr) {
             flags |= residual_part::kSomeLeave;
         } else {
-            if (!residual_part::same_body(expected->state, *truth)) {
+            if (!same_body(expected->state, *truth)) {
                 flags |= residual_part::kSomeBodyChanges;
             }
             if (!same_control(expected->state, *truth)) {

@@ -40,9 +40,8 @@ SnapshotReceiver::Received SnapshotReceiver::receive(const KeyframePart& part, T
 
 std::optional<Snapshot> SnapshotReceiver::decode_alone(std::span<const std::uint8_t> part) {
     auto some = decode_part(kNothing, part);
-    if (some && is_canonical(*some)) return some;
-    ++counts_.malformed;
-    return std::nullopt;
+    if (!some) ++counts_.malformed;
+    return some;
 }
 
 SnapshotReceiver::Received SnapshotReceiver::sketched_with(const Snapshot& part,

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (!rest.empty()) {
         const std::size_t bytes = std::min<std::size_t>(rest.front(), rest.size() - 1);
         const auto said = rest.subspan(1, bytes);
-        const auto whole = assembler.add(Snapshot{}, with_digest({said.begin(), said.end()}));
+        const auto whole = assembler.add(Snapshot{}, with_digest(said));
         if (whole && !is_canonical(*whole)) std::abort();
         rest = rest.subspan(1 + bytes);
     }

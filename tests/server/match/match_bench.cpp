@@ -27,16 +27,6 @@ std::uint64_t hash_of(const replication::Snapshot& snapshot) {
     return hash;
 }
 
-physics::Vec2d position_of(const replication::BallState& ball) {
-    return {replication::dequantise(ball.x, replication::kPositionStepM),
-            replication::dequantise(ball.y, replication::kPositionStepM)};
-}
-
-physics::Vec2d velocity_of(const replication::BallState& ball) {
-    return {replication::dequantise(ball.vx, replication::kVelocityStepMps),
-            replication::dequantise(ball.vy, replication::kVelocityStepMps)};
-}
-
 game::Level quiet_level(int number, const physics::Platform& platform, int ai_balls) {
     game::Level level;
     level.number = number;

@@ -12,8 +12,6 @@ namespace fts::server {
 
 PlayerKey key_of(int number);
 std::uint64_t hash_of(const replication::Snapshot& snapshot);
-physics::Vec2d position_of(const replication::BallState& ball);
-physics::Vec2d velocity_of(const replication::BallState& ball);
 
 // A level whose AI balls cannot move by themselves.
 game::Level quiet_level(int number, const physics::Platform& platform, int ai_balls = 1);
