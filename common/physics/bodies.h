@@ -7,17 +7,18 @@
 #include <vector>
 
 #include "common/physics/body.h"
+#include "common/physics/roomy_vector.h"
 
 namespace fts::physics {
 
 template <typename Scalar>
 struct Bodies {
-    std::vector<Vec2<Scalar>> position_m;
-    std::vector<Vec2<Scalar>> velocity_mps;
-    std::vector<Scalar> radius_m;
-    std::vector<Scalar> mass_kg;
+    RoomyVector<Vec2<Scalar>> position_m;
+    RoomyVector<Vec2<Scalar>> velocity_mps;
+    RoomyVector<Scalar> radius_m;
+    RoomyVector<Scalar> mass_kg;
     std::vector<Control<Scalar>> control;
-    std::vector<std::uint32_t> generation;
+    RoomyVector<std::uint32_t> generation;
     std::vector<std::uint8_t> alive;
     std::vector<BodyId> ids;                // of the living, ascending by index
     std::vector<std::uint32_t> free_slots;  // min-heap

@@ -213,7 +213,7 @@ void CellGrid<Scalar>::search(Scalar reach_m, bool few, NearPairs& pairs) const 
 }
 
 template <typename Scalar>
-void CellGrid<Scalar>::read_order(std::vector<std::uint32_t>& order) const {
+void CellGrid<Scalar>::read_order(RoomyVector<std::uint32_t>& order) const {
     order.clear();
     for (std::uint32_t row = 0; row < axis_[1].cells; ++row) {
         const std::uint32_t left = row * stride_ + 1;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/physics/crowd_kernels.h"
+#include "common/physics/roomy_vector.h"
 #include "common/physics/solver.h"
 
 namespace fts::physics {
@@ -30,7 +31,7 @@ struct Discs {
 };
 
 struct NearPairs {
-    std::vector<std::uint32_t> a, b;  // with room for more
+    RoomyVector<std::uint32_t> a, b;  // with room for more
     std::size_t count = 0;
 };
 
@@ -49,7 +50,7 @@ class CellGrid {
     void find_near(const Discs<Scalar>& discs, Scalar margin_m, NearPairs& pairs);
 
     // The discs of the last search, neighbours near each other.
-    void read_order(std::vector<std::uint32_t>& order) const;
+    void read_order(RoomyVector<std::uint32_t>& order) const;
 
   private:
     struct Axis {
@@ -85,10 +86,10 @@ class CellGrid {
     std::uint32_t most_in_cell_ = 0;
     bool periodic_ = false;
 
-    std::vector<std::uint32_t> cell_;           // by disc
-    std::vector<std::uint32_t> first_;          // by cell: the first place of its discs
-    std::vector<Scalar> x_m_, y_m_, radius_m_;  // by place
-    std::vector<std::uint32_t> disc_;           // by place
+    RoomyVector<std::uint32_t> cell_;           // by disc
+    RoomyVector<std::uint32_t> first_;          // by cell: the first place of its discs
+    RoomyVector<Scalar> x_m_, y_m_, radius_m_;  // by place
+    RoomyVector<std::uint32_t> disc_;           // by place
     std::vector<Image> images_;
     std::vector<std::uint32_t> at_side_;
     std::vector<Scalar> sample_;

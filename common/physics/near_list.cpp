@@ -12,7 +12,7 @@ namespace {
 // For so many looks a list is meant to hold.
 constexpr double kLooks = 6.0;
 // A wider margin, in units of the largest disc's reach, has more pairs than it saves lists.
-constexpr double kWidestMargin = 0.8;
+constexpr double kWidestMargin = 0.95;
 // In units of the last place of the largest coordinate.
 constexpr double kSlopUlps = 16.0;
 

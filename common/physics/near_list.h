@@ -38,6 +38,10 @@ class NearList {
         shift_m_[disc] += by_m + slop_m_;
         worst_shift_m_ = shift_m_[disc] > worst_shift_m_ ? shift_m_[disc] : worst_shift_m_;
     }
+    // It will soon be told to have moved. Inlined, or gcc leaves calls away that only fetch.
+    [[gnu::always_inline]] void fetch(std::uint32_t disc) const {
+        __builtin_prefetch(shift_m_.data() + disc, 1);
+    }
 
     // Every pair whose distance is below the sum of its radii, in any order: with a box (then all
     // places must be inside) the distance to the nearest image. Each once, but in a box so tight
@@ -46,7 +50,7 @@ class NearList {
     bool find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs);
 
     // Of the discs when the list was made, neighbours near each other.
-    void read_order(std::vector<std::uint32_t>& order) const { grid_.read_order(order); }
+    void read_order(RoomyVector<std::uint32_t>& order) const { grid_.read_order(order); }
 
   private:
     void make(const Discs<Scalar>& discs);
@@ -63,7 +67,7 @@ class NearList {
     Scalar margin_m_ = Scalar(0);
     Scalar last_move_m_ = Scalar(0);
     Scalar travelled_m_ = Scalar(0);  // by any disc since the list was made, but for its shift
-    std::vector<Scalar> shift_m_;     // by disc
+    RoomyVector<Scalar> shift_m_;     // by disc
     Scalar worst_shift_m_ = Scalar(0);
     Scalar farthest_m_ = Scalar(0);  // no coordinate is larger
     Scalar slop_m_ = Scalar(0);      // above the round-off of a place, or of a distance

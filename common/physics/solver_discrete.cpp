@@ -15,6 +15,7 @@
 #include "common/physics/hit_order.h"
 #include "common/physics/near_list.h"
 #include "common/physics/periodic.h"
+#include "common/physics/roomy_vector.h"
 
 namespace fts::physics {
 namespace {
@@ -58,7 +59,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     void resolve(Scalar time_s);
     template <bool kEqualRadii, bool kEqualMasses, bool kPeriodic>
     void resolve_pair(const SlotPair& hit, Scalar time_s);
-    void fetch(const SlotPair& hit) const;
+    [[gnu::always_inline]] inline void fetch(const SlotPair& hit) const;
     template <bool kPeriodic>
     [[gnu::always_inline]] inline Line line_of_centres(std::uint32_t a, std::uint32_t b) const;
     template <bool kEqualMasses>
@@ -91,20 +92,20 @@ class DiscreteSolver final : public Solver<Scalar> {
     std::uint32_t events_ = 0;
 
     // By place in the working copy, in which neighbours are near each other.
-    std::vector<Scalar> x_m_, y_m_, vx_mps_, vy_mps_;
-    std::vector<Scalar> radius_m_;             // empty when all are the largest
-    std::vector<Scalar> inverse_mass_per_kg_;  // empty when all are alike
-    std::vector<std::uint32_t> slot_;
+    RoomyVector<Scalar> x_m_, y_m_, vx_mps_, vy_mps_;
+    RoomyVector<Scalar> radius_m_;             // empty when all are the largest
+    RoomyVector<Scalar> inverse_mass_per_kg_;  // empty when all are alike
+    RoomyVector<std::uint32_t> slot_;
     Scalar largest_radius_m_ = Scalar(0);
-    std::vector<std::uint32_t> place_;  // by slot
+    RoomyVector<std::uint32_t> place_;  // by slot
 
     NearList<Scalar> near_;
     std::vector<DiscPair> pairs_;  // of places
     std::vector<SlotPair> hits_;
     HitOrder hit_order_;
-    std::vector<std::uint32_t> order_;
-    std::vector<std::uint32_t> old_slot_;
-    std::vector<Scalar> old_;
+    RoomyVector<std::uint32_t> order_;
+    RoomyVector<std::uint32_t> old_slot_;
+    RoomyVector<Scalar> old_;
     std::vector<std::uint32_t> outside_;
     Box inside_;                        // of the periodic box, both ends inclusive
     std::vector<std::uint32_t> slots_;  // of those at the boundary
@@ -144,7 +145,7 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
     const bool same_bodies = holds_just(bodies);
     if (!same_bodies) take_in_order_of_ids(bodies);
     const std::uint32_t bodies_count = count();
-    for (std::vector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
+    for (RoomyVector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
         values->resize(bodies_count);
     }
     bool same_places = same_bodies;
@@ -275,7 +276,7 @@ void DiscreteSolver<Scalar>::find_pairs() {
 template <typename Scalar>
 void DiscreteSolver<Scalar>::bring_neighbours_together() {
     near_.read_order(order_);
-    for (std::vector<Scalar>* values :
+    for (RoomyVector<Scalar>* values :
          {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
         if (values->empty()) continue;
         old_.swap(*values);
@@ -313,13 +314,15 @@ void DiscreteSolver<Scalar>::resolve(Scalar time_s) {
     }
 }
 
-// Who hits whom is scattered over the memory of a large crowd.
+// Who hits whom is scattered over the memory of a large crowd. Inlined, or gcc leaves calls away
+// that only fetch.
 template <typename Scalar>
-void DiscreteSolver<Scalar>::fetch(const SlotPair& hit) const {
+inline void DiscreteSolver<Scalar>::fetch(const SlotPair& hit) const {
     for (const std::uint32_t i : {hit.place_a, hit.place_b}) {
-        for (const std::vector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
+        for (const RoomyVector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
             __builtin_prefetch(values->data() + i);
         }
+        near_.fetch(i);
     }
     __builtin_prefetch(bodies_->generation.data() + hit.slot_a);
     __builtin_prefetch(bodies_->generation.data() + hit.slot_b);
@@ -470,7 +473,7 @@ void DiscreteSolver<Scalar>::drop(std::uint32_t slot, Scalar time_s) {
         values.pop_back();
     };
     take_from_end(slot_);
-    for (std::vector<Scalar>* values :
+    for (RoomyVector<Scalar>* values :
          {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
         take_from_end(*values);
     }

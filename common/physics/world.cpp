@@ -35,8 +35,8 @@ Model<Scalar> model_of(const Scene& scene) {
     return model;
 }
 
-template <typename Value>
-bool all_equal(const std::vector<BodyId>& ids, const std::vector<Value>& values) {
+template <typename Values>
+bool all_equal(const std::vector<BodyId>& ids, const Values& values) {
     return std::all_of(ids.begin(), ids.end(),
                        [&](BodyId id) { return values[id.index] == values[ids.front().index]; });
 }
