@@ -76,7 +76,8 @@ class EventCells {
                             std::uint32_t* found) const;
 
     // The cell (x, y), counted as those of `cell_of`, and those about it will be asked for.
-    void fetch(std::uint32_t x, std::uint32_t y) const {
+    // Inlined, or gcc leaves calls away that only fetch.
+    [[gnu::always_inline]] void fetch(std::uint32_t x, std::uint32_t y) const {
         for (std::uint32_t row = 0; row < 3; ++row) {
             const Cell* const cell = cells_.data() + index_of(x, y + row);
             __builtin_prefetch(cell);
