@@ -1,6 +1,5 @@
 #include "common/physics/hit_record.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "common/physics/diagnostics.h"
@@ -51,16 +50,8 @@ void record_hits(const Bodies<Scalar>& bodies, Scalar time_s, std::span<const Hi
                      record.audit);
 }
 
-template <typename Scalar>
-Scalar penetration(Scalar distance_m, Scalar radius_1_m, Scalar radius_2_m) {
-    const Scalar depth = (radius_1_m + radius_2_m) - distance_m;
-    return std::max(Scalar(0), depth / std::min(radius_1_m, radius_2_m));
-}
-
 template void record_hits(const Bodies<double>&, double, std::span<const Hit<double>>,
                           Record<double>&);
 template void record_hits(const Bodies<float>&, float, std::span<const Hit<float>>, Record<float>&);
-template double penetration(double, double, double);
-template float penetration(float, float, float);
 
 }  // namespace fts::physics

@@ -1,6 +1,7 @@
 // From what a ContactSet resolved to what a Record keeps.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "common/physics/bodies.h"
@@ -17,6 +18,9 @@ void record_hits(const Bodies<Scalar>& bodies, Scalar time_s, std::span<const Hi
 
 // Depth of two discs in each other, in units of the smaller radius; 0 when they do not overlap.
 template <typename Scalar>
-Scalar penetration(Scalar distance_m, Scalar radius_1_m, Scalar radius_2_m);
+inline Scalar penetration(Scalar distance_m, Scalar radius_1_m, Scalar radius_2_m) {
+    const Scalar depth = std::max(Scalar(0), (radius_1_m + radius_2_m) - distance_m);
+    return depth / std::min(radius_1_m, radius_2_m);
+}
 
 }  // namespace fts::physics

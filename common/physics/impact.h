@@ -9,6 +9,7 @@
 // a pair, and would add up to 1e-16 of its energy each time.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "common/physics/scene.h"
@@ -32,7 +33,24 @@ struct Mover {
 // Empty when the two do not approach, or are both infinitely heavy: such pairs pass through each
 // other.
 template <typename Scalar>
-std::optional<Impact<Scalar>> impact(const Mover<Scalar>& first, const Mover<Scalar>& second,
-                                     Scalar restitution);
+inline std::optional<Impact<Scalar>> impact(const Mover<Scalar>& first, const Mover<Scalar>& second,
+                                            Scalar restitution) {
+    const Vec2<Scalar> d = first.position_m - second.position_m;
+    const Vec2<Scalar> w = first.velocity_mps - second.velocity_mps;
+    const Scalar rate = d.dot(w);
+    const Scalar distance_squared = d.squaredNorm();
+    const Scalar inverse_mass = Scalar(1) / first.mass_kg + Scalar(1) / second.mass_kg;
+    if (!(rate < Scalar(0)) || !(distance_squared > Scalar(0)) || !(inverse_mass > Scalar(0))) {
+        return std::nullopt;
+    }
+    Scalar strength = -(Scalar(1) + restitution) * (rate / distance_squared) / inverse_mass;
+    const Vec2<Scalar> parting = w + strength * d / first.mass_kg + strength * d / second.mass_kg;
+    strength -= (d.dot(parting) + restitution * rate) / distance_squared / inverse_mass;
+    const Vec2<Scalar> impulse = strength * d;
+    const Scalar distance = std::sqrt(distance_squared);
+    return Impact<Scalar>{d / distance, strength * distance,
+                          first.velocity_mps + impulse / first.mass_kg,
+                          second.velocity_mps - impulse / second.mass_kg};
+}
 
 }  // namespace fts::physics

@@ -212,9 +212,9 @@ void SweptEngine<Scalar, Space>::shorten_stretch(std::uint32_t body) {
 }
 
 template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::place(std::uint32_t body) {
+void SweptEngine<Scalar, Space>::place(std::uint32_t body, const Course& course) {
     const bool was_stray = paths_.is_stray(body);
-    if (paths_.follow(body, path_of(body))) {
+    if (paths_.follow(body, course)) {
         if constexpr (Space::kHasImages) space_.cover(swept_box(body));
         return;
     }
@@ -324,7 +324,7 @@ void SweptEngine<Scalar, Space>::predict_images() {
                 if (!image.is_upper()) return;
                 Path moved = path;
                 moved.position_m = space_.moved(path.position_m, image);
-                paths_.for_each_meeting(moved, [&](std::uint32_t other) {
+                paths_.for_each_meeting(paths_.course_of(moved), [&](std::uint32_t other) {
                     if (other == body) return;
                     predict_pair(std::min(body, other), std::max(body, other),
                                  body < other ? image : -image);
@@ -339,23 +339,22 @@ void SweptEngine<Scalar, Space>::predict_strays() {
     fit_strays();
     for (const std::uint32_t body : strays_) space_.cover(swept_box(body));
     for (const std::uint32_t body : strays_) {
-        predict_meetings<false>(body);
+        predict_meetings<false>(body, course_of(body));
         strays_near_.place(body, swept_box(body));
     }
 }
 
 template <typename Scalar, typename Space>
 template <bool kAfterSet>
-void SweptEngine<Scalar, Space>::predict(std::uint32_t body) {
-    predict_meetings<kAfterSet>(body);
+void SweptEngine<Scalar, Space>::predict(std::uint32_t body, const Course& course) {
+    predict_meetings<kAfterSet>(body, course);
     if (model_->walls && !is_immovable(body)) predict_walls<kAfterSet>(body);
     if (model_->platform) predict_fall(body);
 }
 
 template <typename Scalar, typename Space>
 template <bool kAfterSet>
-void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body) {
-    const Path path = path_of(body);
+void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body, const Course& course) {
     const bool is_stray = paths_.is_stray(body), any_strays = !strays_.empty();
     const Box<Scalar> box = Space::kHasImages || any_strays ? swept_box(body) : Box<Scalar>{};
     space_.for_each_image(box, [&](const Box<Scalar>& moved_box, Image image) {
@@ -369,10 +368,14 @@ void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body) {
             predict_pair(a, b, of_a);
         };
         if (any_strays) strays_near_.for_each_near(body, moved_box, meet);
-        if (is_stray) return paths_.for_each_in(moved_box, path.since_s, meet);
-        Path moved = path;
-        moved.position_m = space_.moved(path.position_m, image);
-        paths_.for_each_meeting(moved, meet);
+        if (is_stray) return paths_.for_each_in(moved_box, now_s_ - from_s_, meet);
+        if constexpr (Space::kHasImages) {
+            Path moved = path_of(body);
+            moved.position_m = space_.moved(moved.position_m, image);
+            paths_.for_each_meeting(paths_.course_of(moved), meet);
+        } else {
+            paths_.for_each_meeting(course, meet);
+        }
     });
 }
 
@@ -383,7 +386,8 @@ void SweptEngine<Scalar, Space>::predict_pair(std::uint32_t a, std::uint32_t b, 
     if (is_kept({a, b, image, known_[a].count, known_[b].count})) return;
     const Scalar known_s = std::max(known_[a].time_s, known_[b].time_s);
     const Vec separation = space_.moved(position_at(a, known_s), image) - position_at(b, known_s);
-    const Vec velocity = bodies_->velocity_mps[a] - bodies_->velocity_mps[b];
+    const Vec &of_a = bodies_->velocity_mps[a], &of_b = bodies_->velocity_mps[b];
+    const Vec velocity(of_a.x() - of_b.x(), of_a.y() - of_b.y());
     const Scalar reach = bodies_->radius_m[a] + bodies_->radius_m[b];
     expect({known_s + time_until_contact(separation, velocity, reach), EventKind::kBall, a, b,
             known_[a].count, known_[b].count, image});
@@ -397,6 +401,9 @@ void SweptEngine<Scalar, Space>::predict_walls(std::uint32_t body) {
     const Vec& position = bodies_->position_m[body];
     const Vec& velocity = bodies_->velocity_mps[body];
     const Scalar radius = bodies_->radius_m[body];
+    const Vec way(std::abs(velocity.x()) * left_s, std::abs(velocity.y()) * left_s);
+    if (keeps_off_walls(position, radius, way)) [[likely]]
+        return;
     const auto look_at = [&](std::uint32_t side, Scalar gap, Scalar closing_mps) {
         if (gap > closing_mps * left_s) return;
         const Hold hold = {body, kWallHold + side, Image{}, known_[body].count, 0};
@@ -454,15 +461,16 @@ void SweptEngine<Scalar, Space>::after_event(std::uint32_t body, const Partner& 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body) {
     shorten_stretch(body);
-    place(body);
-    predict<false>(body);
+    const Course course = course_of(body);
+    place(body, course);
+    predict<false>(body, course);
 }
 
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::place_and_predict_set() {
     for (const std::uint32_t body : set_.hit_bodies()) shorten_stretch(body);
-    for (const std::uint32_t body : set_.hit_bodies()) place(body);
-    for (const std::uint32_t body : set_.hit_bodies()) predict<true>(body);
+    for (const std::uint32_t body : set_.hit_bodies()) place(body, course_of(body));
+    for (const std::uint32_t body : set_.hit_bodies()) predict<true>(body, course_of(body));
 }
 
 template <typename Scalar, typename Space>

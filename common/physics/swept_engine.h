@@ -30,6 +30,7 @@ class SweptEngine {
     using Image = typename Space::Image;
     using Happening = Event<Scalar, Image>;
     using Path = typename SweptPaths<Scalar>::Motion;
+    using Course = typename SweptPaths<Scalar>::Course;
     using Touching = typename SweptPaths<Scalar>::Touching;
     static constexpr Scalar kLongAgo = -std::numeric_limits<Scalar>::infinity();
     struct Partner {
@@ -69,7 +70,7 @@ class SweptEngine {
     void end_stretch(Scalar time_s);
     Scalar stretch_end() const;
     void shorten_stretch(std::uint32_t body);
-    void place(std::uint32_t body);
+    void place(std::uint32_t body, const Course& course);
     void fit_strays();
     void predict_everybody();
     template <bool kEqualRadii>
@@ -78,9 +79,9 @@ class SweptEngine {
     void predict_images();
     void predict_strays();
     template <bool kAfterSet>
-    void predict(std::uint32_t body);
+    void predict(std::uint32_t body, const Course& course);
     template <bool kAfterSet>
-    void predict_meetings(std::uint32_t body);
+    void predict_meetings(std::uint32_t body, const Course& course);
     void keep(const Hold& hold) {
         if (looks_ > 1) kept_.push_back(hold);
     }
@@ -94,8 +95,20 @@ class SweptEngine {
         return {position_at(body, now_s_), bodies_->velocity_mps[body], bodies_->radius_m[body],
                 now_s_ - from_s_};
     }
+    Course course_of(std::uint32_t body) const { return paths_.course_of(path_of(body)); }
     template <bool kAfterSet>
     void predict_walls(std::uint32_t body);
+    // By more than so much on each axis.
+    [[gnu::always_inline]] bool keeps_off_walls(const Vec& position_m, Scalar radius_m,
+                                                const Vec& by_m) const {
+        const auto& walls = *model_->walls;
+        const auto keeps_off = [&](int axis) {
+            const Scalar below = position_m[axis] - (walls.min_m[axis] + radius_m);
+            const Scalar above = (walls.max_m[axis] - radius_m) - position_m[axis];
+            return std::min(below, above) > by_m[axis];
+        };
+        return keeps_off(0) && keeps_off(1);
+    }
     void predict_fall(std::uint32_t body);
     void expect(const Happening& event);
     bool is_stale(const Happening& event) const;
@@ -135,10 +148,15 @@ class SweptEngine {
     void for_each_touching(std::uint32_t body, Visit&& visit);
     template <typename Visit>
     void for_each_touched_wall(std::uint32_t body, Visit&& visit) const;
-    Scalar extent_m(std::uint32_t body) const;
+    // The largest length that goes into where a body is within the span.
+    [[gnu::always_inline]] Scalar extent_m(std::uint32_t body) const {
+        const Vec &position = bodies_->position_m[body], &velocity = bodies_->velocity_mps[body];
+        return std::max(std::abs(position.x()), std::abs(position.y())) +
+               std::max(std::abs(velocity.x()), std::abs(velocity.y())) * span_s_;
+    }
     void add_to_set(std::uint32_t body);
 
-    Vec position_at(std::uint32_t body, Scalar time_s) const {
+    [[gnu::always_inline]] Vec position_at(std::uint32_t body, Scalar time_s) const {
         const Vec& position = bodies_->position_m[body];
         const Vec& velocity = bodies_->velocity_mps[body];
         const Scalar since_s = time_s - known_[body].time_s;

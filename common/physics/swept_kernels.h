@@ -25,7 +25,7 @@ struct SweptKernels {
     }
 
     static std::uint32_t first_lanes(std::uint32_t count) {
-        return count >= Pack::kWidth ? (1U << Pack::kWidth) - 1U : (1U << count) - 1U;
+        return (1U << (count < Pack::kWidth ? count : Pack::kWidth)) - 1U;
     }
 
     // The first lanes are looked at even when there are none: few cells hold more than one vector,
@@ -92,28 +92,48 @@ struct SweptKernels {
         return static_cast<std::size_t>(out - found);
     }
 
+    // What several vectors find is written down together, since how much each of them finds is not
+    // to be foreseen.
     template <typename Test>
-    static void search_window(const PathLanes& lanes, const CellWindow& window, FoundPath found,
-                              void* whom, Test test) {
-        for (std::uint32_t row = window.first_y; row <= window.last_y; ++row) {
-            const std::uint32_t* cells = lanes.first + row * lanes.width;
-            const std::uint32_t last = cells[window.last_x + 1];
-            for (std::uint32_t j = cells[window.first_x]; j < last; j += Pack::kWidth) {
-                std::uint32_t bits = test(j) & first_lanes(last - j);
-                for (; bits != 0; bits &= bits - 1) {
-                    found(whom, j + static_cast<std::uint32_t>(__builtin_ctz(bits)));
-                }
+    static std::size_t search_window(const PathLanes& lanes, const CellWindow& window,
+                                     std::uint32_t* found, Test test) {
+        constexpr std::uint32_t kTogether = 64 / kMostLanes;
+        std::uint32_t* out = found;
+        std::uint32_t starts[kTogether];
+        std::uint64_t all = 0;
+        std::uint32_t vectors = 0;
+        const auto write_down = [&] {
+            for (; all != 0; all &= all - 1) {
+                const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(all));
+                *out++ = starts[bit / kMostLanes] + bit % kMostLanes;
             }
+            vectors = 0;
+        };
+        const std::uint32_t* cells = lanes.first + window.first_y * lanes.width;
+        for (std::uint32_t row = window.first_y; row <= window.last_y; ++row) {
+            const std::uint32_t last = cells[window.last_x + 1];
+            for (std::uint32_t j = cells[window.first_x];; j += Pack::kWidth) {
+                const std::uint64_t bits = test(j) & first_lanes(last - j);
+                all |= bits << (kMostLanes * vectors);
+                starts[vectors] = j;
+                if (++vectors == kTogether) [[unlikely]]
+                    write_down();
+                if (last - j <= Pack::kWidth) [[likely]]
+                    break;
+            }
+            cells += lanes.width;
         }
+        write_down();
+        return static_cast<std::size_t>(out - found);
     }
 
-    static void find_meeting(const PathLanes& lanes, const CellWindow& window,
-                             const PathSearch& search, FoundPath found, void* whom) {
+    static std::size_t find_meeting(const PathLanes& lanes, const CellWindow& window,
+                                    const PathSearch& search, std::uint32_t* found) {
         const Vector at_x = Pack::all(search.x), at_y = Pack::all(search.y);
         const Vector to_x = Pack::all(search.ahead_x), to_y = Pack::all(search.ahead_y);
         const Vector half_time = Pack::all(search.half_time), limit = Pack::all(search.limit);
         const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
-        search_window(lanes, window, found, whom, [&](std::uint32_t j) {
+        return search_window(lanes, window, found, [&](std::uint32_t j) {
             const Vector x = Pack::load(lanes.x + j), y = Pack::load(lanes.y + j);
             const Vector ahead_x = Pack::load(lanes.ahead_x + j);
             const Vector ahead_y = Pack::load(lanes.ahead_y + j);
@@ -128,10 +148,10 @@ struct SweptKernels {
         });
     }
 
-    static void find_touching(const PathLanes& lanes, const CellWindow& window,
-                              const TouchSearch& search, FoundPath found, void* whom) {
+    static std::size_t find_touching(const PathLanes& lanes, const CellWindow& window,
+                                     const TouchSearch& search, std::uint32_t* found) {
         const Vector half_time = Pack::all(search.half_time);
-        search_window(lanes, window, found, whom, [&](std::uint32_t j) {
+        return search_window(lanes, window, found, [&](std::uint32_t j) {
             const Vector start_x = Pack::load(lanes.x + j), start_y = Pack::load(lanes.y + j);
             const Vector way_x = Pack::sub(Pack::load(lanes.ahead_x + j), start_x);
             const Vector way_y = Pack::sub(Pack::load(lanes.ahead_y + j), start_y);

@@ -56,10 +56,7 @@ constexpr std::size_t most_found(std::size_t paths, std::uint32_t rows) {
     return paths / 4 + 2 * (std::size_t{rows} + 1);
 }
 
-// What is found is told as found(whom, j), the index of a path.
-using FoundPath = void (*)(void* whom, std::uint32_t j);
-
-struct CellWindow {  // inclusive; empty when a last one is below its first
+struct CellWindow {  // inclusive
     std::uint32_t first_x, first_y, last_x, last_y;
 };
 
@@ -86,10 +83,11 @@ struct LaneKernels {
     // or all paths were looked at; returns how many. Some have no bits.
     std::size_t (*find_pairs)(const PathLanes&, const PairSearch&, PairCursor& cursor,
                               FoundPairs* found, std::size_t room);
-    void (*find_meeting)(const PathLanes&, const CellWindow&, const PathSearch&, FoundPath,
-                         void* whom);
-    void (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&, FoundPath,
-                          void* whom);
+    // These write the indices of the paths they find, which may be all, and return how many.
+    std::size_t (*find_meeting)(const PathLanes&, const CellWindow&, const PathSearch&,
+                                std::uint32_t* found);
+    std::size_t (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&,
+                                 std::uint32_t* found);
 };
 
 // Those of a level that the processor has. Above AVX2 there are none of their own, since few cells

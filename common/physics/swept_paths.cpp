@@ -53,6 +53,7 @@ void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, std::span<const Vec
         fit(bodies, places_m, equal_radii, span_s);
     ++spans_since_fit_;
     span_s_ = span_s;
+    half_per_s_ = span_s > Scalar(0) ? Scalar(0.5) / span_s : Scalar(0);
     per_mps_ = Scalar(2) * span_s * per_m_;
     if (!is_known_order(bodies)) {
         order_.clear();
@@ -65,6 +66,7 @@ void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, std::span<const Vec
         find_cells<false>(bodies, places_m);
         sort<false>(bodies);
     }
+    lanes_ = lanes();
     if (spans_since_fit_ == 1) fitted_strays_ = strays_.size();
 }
 
@@ -123,7 +125,7 @@ void SweptPaths<Scalar>::reserve(std::size_t bodies) {
     for (std::vector<float>* lane : {&x_, &y_, &ahead_x_, &ahead_y_, &radius_}) {
         lane->reserve(bodies + kMostLanes);
     }
-    for (std::vector<std::uint32_t>* by_body : {&order_, &cell_, &body_, &strays_}) {
+    for (std::vector<std::uint32_t>* by_body : {&order_, &cell_, &body_, &strays_, &near_}) {
         by_body->reserve(bodies);
     }
     starts_.reserve(bodies + 1);
@@ -250,6 +252,7 @@ void SweptPaths<Scalar>::pad() {
     constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
     const std::size_t paths = starts_.size();
     body_.resize(paths);
+    near_.resize(paths);
     found_.resize(most_found(paths, margin_) + kFoundAtOnce);
     kernels_ = &lane_kernels(best_simd_level(), equal_radii_);
     for (std::vector<float>* lane : {&x_, &y_, &ahead_x_, &ahead_y_}) {
@@ -267,30 +270,29 @@ std::uint32_t SweptPaths<Scalar>::path_of(std::uint32_t body) const {
 }
 
 template <typename Scalar>
-bool SweptPaths<Scalar>::follow(std::uint32_t body, const Motion& motion) {
+bool SweptPaths<Scalar>::follow(std::uint32_t body, const Course& course) {
     const std::uint32_t cell = cell_[body];
     if (cell == kNoCell) return false;
-    const float x = cells_x(motion.position_m.x()), y = cells_y(motion.position_m.y());
-    const auto way_x = static_cast<float>(motion.velocity_mps.x() * per_mps_);
-    const auto way_y = static_cast<float>(motion.velocity_mps.y() * per_mps_);
-    const float half = half_time(motion.since_s), left = 0.5F - half;
+    const float half = course.half_time, left = 0.5F - half;
+    const float from_middle = 0.5F + longest_way_;
     const auto stays = [&](float from, float way, std::uint32_t index) {
-        const float low = static_cast<float>(index) - longest_way_;
-        const float high = static_cast<float>(index + 1) + longest_way_;
-        const float to = from + way * left;
-        return low <= from && from <= high && low <= to && to <= high &&
-               std::abs(way) <= 2.0F * kWayWhenTurned * longest_way_ &&
-               std::abs(way * left) <= 2.0F * longest_way_;
+        const float middle = static_cast<float>(index) + 0.5F, to = from + way * left;
+        return static_cast<int>(std::abs(from - middle) <= from_middle) &
+               static_cast<int>(std::abs(to - middle) <= from_middle) &
+               static_cast<int>(std::abs(way) <= 2.0F * kWayWhenTurned * longest_way_) &
+               static_cast<int>(std::abs(way * left) <= 2.0F * longest_way_);
     };
-    const std::uint32_t path = path_of(body);
-    if (!stays(x, way_x, cell % width_) || !stays(y, way_y, cell / width_)) {
+    const int stay =
+        stays(course.x, course.way_x, cell % width_) & stays(course.y, course.way_y, cell / width_);
+    if (stay == 0) {
         remove(body);
         return false;
     }
-    x_[path] = x - way_x * half;
-    y_[path] = y - way_y * half;
-    ahead_x_[path] = x_[path] + way_x;
-    ahead_y_[path] = y_[path] + way_y;
+    const std::uint32_t path = path_of(body);
+    x_[path] = course.x - course.way_x * half;
+    y_[path] = course.y - course.way_y * half;
+    ahead_x_[path] = x_[path] + course.way_x;
+    ahead_y_[path] = y_[path] + course.way_y;
     return true;
 }
 
@@ -313,37 +315,10 @@ std::pair<std::uint32_t, std::uint32_t> SweptPaths<Scalar>::cells_within(
 }
 
 template <typename Scalar>
-CellWindow SweptPaths<Scalar>::window(float min_x, float min_y, float max_x, float max_y) const {
-    const auto end_x = static_cast<float>(width_), end_y = static_cast<float>(height_);
-    if (!(min_x < end_x && min_y < end_y && max_x >= 0.0F && max_y >= 0.0F) || columns_ == 0) {
-        return {1, 1, 0, 0};
-    }
-    const auto index = [](float place, float last) {
-        return static_cast<std::uint32_t>(std::clamp(place, 0.0F, last));
-    };
-    return {index(min_x, end_x - 1.0F), index(min_y, end_y - 1.0F), index(max_x, end_x - 1.0F),
-            index(max_y, end_y - 1.0F)};
-}
-
-template <typename Scalar>
 PathLanes SweptPaths<Scalar>::lanes() const {
     return {x_.data(),       y_.data(),      ahead_x_.data(),
             ahead_y_.data(), radius_.data(), first_.data(),
             width_,          height_,        static_cast<std::uint32_t>(body_.size())};
-}
-
-template <typename Scalar>
-CellWindow SweptPaths<Scalar>::prepare(const Motion& motion, PathSearch& search) const {
-    const float x = cells_x(motion.position_m.x()), y = cells_y(motion.position_m.y());
-    const float half = half_time(motion.since_s), left = 0.5F - half;
-    const auto way_x = static_cast<float>(motion.velocity_mps.x() * per_mps_);
-    const auto way_y = static_cast<float>(motion.velocity_mps.y() * per_mps_);
-    const auto radius = static_cast<float>(motion.radius_m * per_m_);
-    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_};
-    const float near = radius + largest_radius_ + longest_way_ + kNearBlurs * blur_;
-    const float to_x = x + left * way_x, to_y = y + left * way_y;
-    return window(std::min(x, to_x) - near, std::min(y, to_y) - near, std::max(x, to_x) + near,
-                  std::max(y, to_y) + near);
 }
 
 template <typename Scalar>

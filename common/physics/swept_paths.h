@@ -8,6 +8,7 @@
 // grid is fitted anew. No allocation after warm-up.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -30,6 +31,13 @@ class SweptPaths {
         Vec velocity_mps = Vec::Zero();
         Scalar radius_m = Scalar(0);
         Scalar since_s = Scalar(0);
+    };
+    // The same in cells.
+    struct Course {
+        float x, y;
+        float way_x, way_y;  // twice that of the span
+        float radius;
+        float half_time;
     };
     struct Touching {
         Vec position_m = Vec::Zero();
@@ -56,21 +64,22 @@ class SweptPaths {
     template <typename Visit>
     void for_each_outside(const Box<Scalar>& box, Visit&& visit) const;
 
+    [[gnu::always_inline]] Course course_of(const Motion& motion) const;
     // The body moves like this from now on. False when that makes it a stray.
-    bool follow(std::uint32_t body, const Motion& motion);
+    bool follow(std::uint32_t body, const Course& course);
     void remove(std::uint32_t body);
 
     // visit(other) for each that may touch who moves like this and is no stray, or an image of such
     // a one; itself among them.
     template <typename Visit>
-    void for_each_meeting(const Motion& motion, Visit&& visit) const;
+    void for_each_meeting(const Course& course, Visit&& visit);
     // The same for a stray that stays within the box.
     template <typename Visit>
     void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
     // visit(other) for each that may touch one of two discs at this time; themselves among them.
     template <typename Visit>
     void for_each_touching(const Touching& first, const Touching& second, Scalar since_s,
-                           Visit&& visit) const;
+                           Visit&& visit);
 
   private:
     static constexpr std::uint32_t kNoCell = 0xffffffff;
@@ -92,15 +101,14 @@ class SweptPaths {
     std::uint32_t path_of(std::uint32_t body) const;
     float cells_x(Scalar x_m) const { return static_cast<float>((x_m - origin_m_.x()) * per_m_); }
     float cells_y(Scalar y_m) const { return static_cast<float>((y_m - origin_m_.y()) * per_m_); }
-    float half_time(Scalar since_s) const {
-        return span_s_ > Scalar(0) ? static_cast<float>(Scalar(0.5) * since_s / span_s_) : 0.0F;
-    }
+    float half_time(Scalar since_s) const { return static_cast<float>(since_s * half_per_s_); }
     // Those that lie between the two whatever the round-off: [first, end), end >= first.
     std::pair<std::uint32_t, std::uint32_t> cells_within(float low, float high,
                                                          std::uint32_t cells) const;
-    CellWindow window(float min_x, float min_y, float max_x, float max_y) const;
+    [[gnu::always_inline]] CellWindow window(float min_x, float min_y, float max_x,
+                                             float max_y) const;
     PathLanes lanes() const;
-    CellWindow prepare(const Motion& motion, PathSearch& search) const;
+    [[gnu::always_inline]] CellWindow prepare(const Course& course, PathSearch& search) const;
     CellWindow prepare(const Touching& first, const Touching& second, Scalar since_s,
                        TouchSearch& search) const;
 
@@ -124,6 +132,7 @@ class SweptPaths {
 
     // The span.
     Scalar span_s_ = Scalar(0);
+    Scalar half_per_s_ = Scalar(0);     // half the part of the span that a second is
     Scalar per_mps_ = Scalar(0);        // twice the cells that one metre a second leads in the span
     std::vector<std::uint32_t> order_;  // the bodies in the order of the last sort
     std::vector<PathStart> starts_;
@@ -133,14 +142,48 @@ class SweptPaths {
     std::vector<std::uint32_t> body_;  // by path
     std::vector<std::uint32_t> strays_;
     std::vector<FoundPairs> found_;
+    std::vector<std::uint32_t> near_;  // paths that were found
+    PathLanes lanes_ = {};
     const LaneKernels* kernels_ = nullptr;
     std::vector<Scalar> sample_;
 };
 
 template <typename Scalar>
+inline auto SweptPaths<Scalar>::course_of(const Motion& motion) const -> Course {
+    return {cells_x(motion.position_m.x()),
+            cells_y(motion.position_m.y()),
+            static_cast<float>(motion.velocity_mps.x() * per_mps_),
+            static_cast<float>(motion.velocity_mps.y() * per_mps_),
+            static_cast<float>(motion.radius_m * per_m_),
+            half_time(motion.since_s)};
+}
+
+template <typename Scalar>
+inline CellWindow SweptPaths<Scalar>::window(float min_x, float min_y, float max_x,
+                                             float max_y) const {
+    const auto last_x = static_cast<float>(width_ - 1), last_y = static_cast<float>(height_ - 1);
+    const auto index = [](float place, float last) {
+        return static_cast<std::uint32_t>(
+            static_cast<std::int32_t>(std::min(last, std::max(0.0F, place))));
+    };
+    return {index(min_x, last_x), index(min_y, last_y), index(max_x, last_x), index(max_y, last_y)};
+}
+
+template <typename Scalar>
+inline CellWindow SweptPaths<Scalar>::prepare(const Course& course, PathSearch& search) const {
+    const auto [x, y, way_x, way_y, radius, half] = course;
+    const float left = 0.5F - half;
+    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_};
+    const float near = radius + largest_radius_ + longest_way_ + kNearBlurs * blur_;
+    const float to_x = x + left * way_x, to_y = y + left * way_y;
+    return window(std::min(x, to_x) - near, std::min(y, to_y) - near, std::max(x, to_x) + near,
+                  std::max(y, to_y) + near);
+}
+
+template <typename Scalar>
 template <typename Visit>
 void SweptPaths<Scalar>::for_each_pair(Visit&& visit) {
-    const PathLanes all = lanes();
+    const PathLanes all = lanes_;
     const PairSearch search = {reach_, margin_, limit_, most_found(all.paths, margin_)};
     PairCursor cursor;
     while (cursor.path < all.paths) {
@@ -177,20 +220,11 @@ void SweptPaths<Scalar>::for_each_outside(const Box<Scalar>& box, Visit&& visit)
 
 template <typename Scalar>
 template <typename Visit>
-void SweptPaths<Scalar>::for_each_meeting(const Motion& motion, Visit&& visit) const {
-    struct Whom {
-        const std::uint32_t* body;
-        Visit& visit;
-    } whom = {body_.data(), visit};
+void SweptPaths<Scalar>::for_each_meeting(const Course& course, Visit&& visit) {
     PathSearch search = {};
-    const CellWindow cells = prepare(motion, search);
-    kernels_->find_meeting(
-        lanes(), cells, search,
-        [](void* to, std::uint32_t j) {
-            const Whom& known = *static_cast<Whom*>(to);
-            known.visit(known.body[j]);
-        },
-        &whom);
+    const CellWindow cells = prepare(course, search);
+    const std::size_t count = kernels_->find_meeting(lanes_, cells, search, near_.data());
+    for (std::size_t i = 0; i < count; ++i) visit(body_[near_[i]]);
 }
 
 template <typename Scalar>
@@ -214,20 +248,11 @@ void SweptPaths<Scalar>::for_each_in(const Box<Scalar>& box, Scalar since_s, Vis
 template <typename Scalar>
 template <typename Visit>
 void SweptPaths<Scalar>::for_each_touching(const Touching& first, const Touching& second,
-                                           Scalar since_s, Visit&& visit) const {
-    struct Whom {
-        const std::uint32_t* body;
-        Visit& visit;
-    } whom = {body_.data(), visit};
+                                           Scalar since_s, Visit&& visit) {
     TouchSearch search = {};
     const CellWindow cells = prepare(first, second, since_s, search);
-    kernels_->find_touching(
-        lanes(), cells, search,
-        [](void* to, std::uint32_t j) {
-            const Whom& known = *static_cast<Whom*>(to);
-            known.visit(known.body[j]);
-        },
-        &whom);
+    const std::size_t count = kernels_->find_touching(lanes_, cells, search, near_.data());
+    for (std::size_t i = 0; i < count; ++i) visit(body_[near_[i]]);
 }
 
 extern template class SweptPaths<double>;

@@ -13,23 +13,12 @@ namespace {
 constexpr double kSameInstant = 8.0;
 
 template <typename Scalar>
-Scalar largest(const Vec2<Scalar>& v) {
-    return std::max(std::abs(v.x()), std::abs(v.y()));
-}
-
-template <typename Scalar>
 Box<Scalar> united(const Box<Scalar>& a, const Box<Scalar>& b) {
     return {std::min(a.min_x_m, b.min_x_m), std::min(a.min_y_m, b.min_y_m),
             std::max(a.max_x_m, b.max_x_m), std::max(a.max_y_m, b.max_y_m)};
 }
 
 }  // namespace
-
-// The largest length that goes into where a body is within the span.
-template <typename Scalar, typename Space>
-Scalar SweptEngine<Scalar, Space>::extent_m(std::uint32_t body) const {
-    return largest(bodies_->position_m[body]) + largest(bodies_->velocity_mps[body]) * span_s_;
-}
 
 template <typename Scalar, typename Space>
 auto SweptEngine<Scalar, Space>::disc_at(std::uint32_t body, const Vec& position_m) const -> Disc {
@@ -92,6 +81,8 @@ void SweptEngine<Scalar, Space>::for_each_touched_wall(std::uint32_t body, Visit
     const Vec position = position_at(body, now_s_);
     const Scalar radius = bodies_->radius_m[body];
     const Scalar tolerance = touch_tolerance_m(radius, extent_m(body));
+    if (keeps_off_walls(position, radius, {tolerance, tolerance})) [[likely]]
+        return;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
         const Scalar below = position[axis] - (model_->walls->min_m[axis] + radius);
         const Scalar above = (model_->walls->max_m[axis] - radius) - position[axis];

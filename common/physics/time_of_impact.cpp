@@ -1,21 +1,7 @@
 #include "common/physics/time_of_impact.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace fts::physics {
 namespace {
-
-template <typename Scalar>
-Scalar cross(const Vec2<Scalar>& a, const Vec2<Scalar>& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
-// Half the chord that a line at distance `offset_m` from the centre cuts from a circle; NaN-free.
-template <typename Scalar>
-Scalar half_chord(Scalar radius_m, Scalar offset_m) {
-    return std::sqrt(std::max(Scalar(0), (radius_m - offset_m) * (radius_m + offset_m)));
-}
 
 template <typename Scalar>
 Scalar time_until_outside_disc(Scalar radius_m, const Vec2<Scalar>& position_m,
@@ -86,21 +72,6 @@ bool stays_on(const Rectangle& rectangle, const Vec2<Scalar>& position_m,
 }  // namespace
 
 template <typename Scalar>
-Scalar time_until_contact(const Vec2<Scalar>& separation_m,
-                          const Vec2<Scalar>& relative_velocity_mps, Scalar reach_m) {
-    const Scalar rate = separation_m.dot(relative_velocity_mps);
-    if (!(rate < Scalar(0))) return kNever<Scalar>;
-    const Scalar distance = separation_m.norm();
-    if (distance <= reach_m) return Scalar(0);
-    const Scalar speed = relative_velocity_mps.norm();
-    if (!(speed > Scalar(0))) return kNever<Scalar>;
-    const Scalar passing = std::abs(cross(separation_m, relative_velocity_mps)) / speed;
-    if (passing > reach_m) return kNever<Scalar>;
-    const Scalar chord = half_chord(reach_m, passing);
-    return (distance - reach_m) * (distance + reach_m) / ((chord - rate / speed) * speed);
-}
-
-template <typename Scalar>
 Scalar time_until_wall(Scalar gap_m, Scalar closing_speed_mps) {
     if (!(closing_speed_mps > Scalar(0))) return kNever<Scalar>;
     return gap_m > Scalar(0) ? gap_m / closing_speed_mps : Scalar(0);
@@ -121,8 +92,6 @@ bool surely_stays(const Platform& platform, const Vec2<Scalar>& position_m,
                       platform);
 }
 
-template double time_until_contact(const Vec2<double>&, const Vec2<double>&, double);
-template float time_until_contact(const Vec2<float>&, const Vec2<float>&, float);
 template double time_until_wall(double, double);
 template float time_until_wall(float, float);
 template double time_until_edge(const Platform&, const Vec2<double>&, const Vec2<double>&);

@@ -10,6 +10,8 @@
 // squares is formed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/physics/scene.h"
@@ -19,11 +21,33 @@ namespace fts::physics {
 template <typename Scalar>
 inline constexpr Scalar kNever = std::numeric_limits<Scalar>::infinity();
 
+template <typename Scalar>
+inline Scalar cross(const Vec2<Scalar>& a, const Vec2<Scalar>& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+// Half the chord that a line at distance `offset_m` from the centre cuts from a circle; NaN-free.
+template <typename Scalar>
+inline Scalar half_chord(Scalar radius_m, Scalar offset_m) {
+    return std::sqrt(std::max(Scalar(0), (radius_m - offset_m) * (radius_m + offset_m)));
+}
+
 // Two discs: `separation_m` and `relative_velocity_mps` are first minus second, `reach_m` the sum
 // of radii.
 template <typename Scalar>
-Scalar time_until_contact(const Vec2<Scalar>& separation_m,
-                          const Vec2<Scalar>& relative_velocity_mps, Scalar reach_m);
+inline Scalar time_until_contact(const Vec2<Scalar>& separation_m,
+                                 const Vec2<Scalar>& relative_velocity_mps, Scalar reach_m) {
+    const Scalar rate = separation_m.dot(relative_velocity_mps);
+    if (!(rate < Scalar(0))) return kNever<Scalar>;
+    const Scalar distance = separation_m.norm();
+    if (distance <= reach_m) return Scalar(0);
+    const Scalar speed = relative_velocity_mps.norm();
+    if (!(speed > Scalar(0))) return kNever<Scalar>;
+    const Scalar passing = std::abs(cross(separation_m, relative_velocity_mps)) / speed;
+    if (passing > reach_m) return kNever<Scalar>;
+    const Scalar chord = half_chord(reach_m, passing);
+    return (distance - reach_m) * (distance + reach_m) / ((chord - rate / speed) * speed);
+}
 
 // A straight wall at distance `gap_m` that is approached at `closing_speed_mps`.
 template <typename Scalar>

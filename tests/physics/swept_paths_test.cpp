@@ -132,10 +132,10 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
             const Vec2d turned = dice.in_box(1.5 * crowd.speed_mps);
             all.position_m[body] += (all.velocity_mps[body] - turned) * now_s;
             all.velocity_mps[body] = turned;
-            if (!paths.follow(body, {at(body), turned, all.radius_m[body], now_s})) continue;
+            const auto course = paths.course_of({at(body), turned, all.radius_m[body], now_s});
+            if (!paths.follow(body, course)) continue;
             std::set<std::uint32_t> meeting, touching;
-            paths.for_each_meeting({at(body), turned, all.radius_m[body], now_s},
-                                   [&](std::uint32_t other) { meeting.insert(other); });
+            paths.for_each_meeting(course, [&](std::uint32_t other) { meeting.insert(other); });
             paths.for_each_touching({at(body), all.radius_m[body], 0.0}, {}, now_s,
                                     [&](std::uint32_t other) { touching.insert(other); });
             for (const BodyId other_id : all.ids) {
@@ -253,10 +253,6 @@ RowOfPaths rows_of_paths(std::uint32_t rows, bool equal_radii, Dice& dice) {
 
 using Found = std::vector<Pair>;
 
-void note(void* to, std::uint32_t path) {
-    static_cast<Found*>(to)->push_back({0, path});
-}
-
 Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
     Found all;
     const PairSearch search = {0.9F, 1, lanes.radius ? 0.01F : 0.1F, most_found(lanes.paths, 1)};
@@ -272,10 +268,17 @@ Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
             }
         }
     }
-    const CellWindow window = {2, 0, 6, 3};
-    kernels.find_meeting(lanes, window, {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F}, note, &all);
-    kernels.find_touching(
-        lanes, window, {{4.1F, 4.6F}, {1.2F, 1.5F}, {0.1F, 0.2F}, {0.3F, 0.2F}, 0.3F}, note, &all);
+    std::vector<std::uint32_t> met(lanes.paths);
+    const auto note = [&](std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) all.push_back({0, met[i]});
+    };
+    const CellWindow window = {2, 0, 6, 3}, everywhere = {0, 0, lanes.width - 1, lanes.height - 1};
+    note(kernels.find_meeting(lanes, window, {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F},
+                              met.data()));
+    note(kernels.find_meeting(lanes, everywhere, {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 9.0F},
+                              met.data()));
+    note(kernels.find_touching(
+        lanes, window, {{4.1F, 4.6F}, {1.2F, 1.5F}, {0.1F, 0.2F}, {0.3F, 0.2F}, 0.3F}, met.data()));
     std::sort(all.begin(), all.end());
     return all;
 }
