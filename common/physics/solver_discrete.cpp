@@ -16,6 +16,7 @@
 #include "common/physics/near_list.h"
 #include "common/physics/periodic.h"
 #include "common/physics/roomy_vector.h"
+#include "common/physics/slot_scatter.h"
 
 namespace fts::physics {
 namespace {
@@ -98,6 +99,7 @@ class DiscreteSolver final : public Solver<Scalar> {
     RoomyVector<std::uint32_t> slot_;
     Scalar largest_radius_m_ = Scalar(0);
     RoomyVector<std::uint32_t> place_;  // by slot
+    SlotScatter<Scalar> to_slots_;
 
     NearList<Scalar> near_;
     std::vector<DiscPair> pairs_;  // of places
@@ -205,6 +207,7 @@ bool DiscreteSolver<Scalar>::holds_just(const Bodies<Scalar>& bodies) const {
 template <typename Scalar>
 void DiscreteSolver<Scalar>::take_in_order_of_ids(const Bodies<Scalar>& bodies) {
     slot_.clear();
+    to_slots_.forget();
     place_.resize(bodies.slots());
     for (const BodyId id : bodies.ids) {
         place_[id.index] = count();
@@ -215,15 +218,13 @@ void DiscreteSolver<Scalar>::take_in_order_of_ids(const Bodies<Scalar>& bodies) 
 template <typename Scalar>
 void DiscreteSolver<Scalar>::synchronise_positions(Bodies<Scalar>& bodies) {
     if (!std::exchange(positions_ahead_, false)) return;
-    for (std::uint32_t i = 0; i < count(); ++i) bodies.position_m[slot_[i]] = {x_m_[i], y_m_[i]};
+    to_slots_.write(slot_, x_m_, y_m_, bodies.position_m);
 }
 
 template <typename Scalar>
 void DiscreteSolver<Scalar>::synchronise_velocities(Bodies<Scalar>& bodies) {
     if (!std::exchange(velocities_ahead_, false)) return;
-    for (std::uint32_t i = 0; i < count(); ++i) {
-        bodies.velocity_mps[slot_[i]] = {vx_mps_[i], vy_mps_[i]};
-    }
+    to_slots_.write(slot_, vx_mps_, vy_mps_, bodies.velocity_mps);
 }
 
 // Gives how far the fastest has gone.
@@ -285,6 +286,7 @@ void DiscreteSolver<Scalar>::bring_neighbours_together() {
     }
     old_slot_.swap(slot_);
     slot_.clear();
+    to_slots_.forget();
     for (const std::uint32_t from : order_) {
         place_[old_slot_[from]] = count();
         slot_.push_back(old_slot_[from]);
@@ -465,6 +467,7 @@ void DiscreteSolver<Scalar>::drop(std::uint32_t slot, Scalar time_s) {
         {bodies_->id_of(slot), time_s, {x_m_[i], y_m_[i]}, {vx_mps_[i], vy_mps_[i]}});
     bodies_->remove(slot);
     near_.forget();
+    to_slots_.forget();
     ++events_;
     place_[slot_.back()] = i;
     const auto take_from_end = [i](auto& values) {
