@@ -70,13 +70,11 @@ void SweptEngine<Scalar, Space>::begin(Bodies<Scalar>& bodies, const Model<Scala
 // What is known by body is reset only where something happened, which is to few.
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::begin_knowledge() {
-    for (const std::uint32_t body : touched_) {
-        known_[body] = {.count = known_[body].count};
-    }
-    touched_.clear();
+    for (const std::uint32_t body : touched()) known_[body] = {.count = known_[body].count};
+    touched_count_ = 0;
     const std::uint32_t slots = bodies_->slots();
     if (slots == known_.size()) return;
-    touched_.reserve(slots);
+    touched_.resize(slots + 1);
     strays_.reserve(slots);
     boxes_.reserve(slots);
     near_.reserve(slots);
@@ -90,7 +88,7 @@ void SweptEngine<Scalar, Space>::begin_knowledge() {
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::begin_stretch() {
     until_s_ = stretch_end();
-    for (const std::uint32_t body : touched_) known_[body].partner = {};
+    for (const std::uint32_t body : touched()) known_[body].partner = {};
     kept_.clear();
 }
 
@@ -168,7 +166,7 @@ void SweptEngine<Scalar, Space>::end_stretch(Scalar time_s) {
         return;
     }
     ends_.clear();
-    for (const std::uint32_t body : touched_) {
+    for (const std::uint32_t body : touched()) {
         ends_.push_back(bodies_->alive[body] ? position_at(body, time_s) : position[body]);
     }
     const std::uint32_t slots = bodies_->slots();
@@ -294,10 +292,12 @@ void SweptEngine<Scalar, Space>::predict_pairs() {
         const std::uint32_t a = std::min(first, second), b = std::max(first, second);
         if (any_immovable && is_immovable(a) && is_immovable(b)) return;
         const Scalar reach = kEqualRadii ? twice_radius : all.radius_m[a] + all.radius_m[b];
-        expect(
-            {now_s_ + time_until_contact<Scalar>(all.position_m[a] - all.position_m[b],
-                                                 all.velocity_mps[a] - all.velocity_mps[b], reach),
-             EventKind::kBall, a, b, known_[a].count, known_[b].count, Image{}});
+        const Vec &at_a = all.position_m[a], &at_b = all.position_m[b];
+        const Vec &of_a = all.velocity_mps[a], &of_b = all.velocity_mps[b];
+        const Scalar wait_s =
+            time_until_contact<Scalar>({at_a.x() - at_b.x(), at_a.y() - at_b.y()},
+                                       {of_a.x() - of_b.x(), of_a.y() - of_b.y()}, reach);
+        expect({now_s_ + wait_s, EventKind::kBall, a, b, known_[a].count, known_[b].count, {}});
     });
 }
 
@@ -385,7 +385,8 @@ void SweptEngine<Scalar, Space>::predict_pair(std::uint32_t a, std::uint32_t b, 
     if (!model_->equal_masses && is_immovable(a) && is_immovable(b)) return;
     if (is_kept({a, b, image, known_[a].count, known_[b].count})) return;
     const Scalar known_s = std::max(known_[a].time_s, known_[b].time_s);
-    const Vec separation = space_.moved(position_at(a, known_s), image) - position_at(b, known_s);
+    const Vec at_a = space_.moved(position_at(a, known_s), image), at_b = position_at(b, known_s);
+    const Vec separation(at_a.x() - at_b.x(), at_a.y() - at_b.y());
     const Vec &of_a = bodies_->velocity_mps[a], &of_b = bodies_->velocity_mps[b];
     const Vec velocity(of_a.x() - of_b.x(), of_a.y() - of_b.y());
     const Scalar reach = bodies_->radius_m[a] + bodies_->radius_m[b];

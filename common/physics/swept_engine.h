@@ -40,7 +40,7 @@ class SweptEngine {
     };
 
     // Of one body, in the drift.
-    struct Known {
+    struct alignas(32) Known {
         Scalar time_s = Scalar(0);  // when its position holds
         Scalar hit_s = kLongAgo;    // the last collision
         std::uint32_t count = 0;    // events so far, and before
@@ -163,17 +163,20 @@ class SweptEngine {
         return {position.x() + velocity.x() * since_s, position.y() + velocity.y() * since_s};
     }
     void move_to(std::uint32_t body, Scalar time_s) {
-        if (!known_[body].is_touched) {
-            known_[body].is_touched = true;
-            touched_.push_back(body);
-        }
+        Known& known = known_[body];
         bodies_->position_m[body] = position_at(body, time_s);
-        known_[body].time_s = time_s;
+        known.time_s = time_s;
+        // Whether it is new is not to be foreseen.
+        touched_[touched_count_] = body;
+        touched_count_ += known.is_touched ? 0U : 1U;
+        known.is_touched = true;
     }
     // From b to the image of a.
     Vec separation_now(std::uint32_t a, std::uint32_t b, Image image) const {
-        return space_.moved(position_at(a, now_s_), image) - position_at(b, now_s_);
+        const Vec at_a = space_.moved(position_at(a, now_s_), image), at_b = position_at(b, now_s_);
+        return {at_a.x() - at_b.x(), at_a.y() - at_b.y()};
     }
+    std::span<const std::uint32_t> touched() const { return {touched_.data(), touched_count_}; }
     Box<Scalar> swept_box(std::uint32_t body) const;
     bool is_immovable(std::uint32_t body) const { return std::isinf(bodies_->mass_kg[body]); }
     bool was_just_hit(std::uint32_t body) const;
@@ -199,8 +202,10 @@ class SweptEngine {
     std::uint32_t looks_ = 1;  // in a stretch
     Scalar now_s_ = Scalar(0);
 
-    std::vector<Known> known_;            // by body
-    std::vector<std::uint32_t> touched_;  // of whom that is not as it was at first
+    std::vector<Known> known_;  // by body
+    // Of whom that is not as it was at first: so many, and room for one more.
+    std::size_t touched_count_ = 0;
+    std::vector<std::uint32_t> touched_;
     SweptPaths<Scalar> paths_;
     std::vector<std::uint32_t> strays_;  // whom paths_ does not hold
     std::size_t fitted_strays_ = 0;
