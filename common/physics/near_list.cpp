@@ -49,7 +49,7 @@ void NearList<Scalar>::all_moved(Scalar at_most_m) {
 
 template <typename Scalar>
 bool NearList<Scalar>::find_overlaps(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs) {
-    const bool anew = !holds_ || !(Scalar(2) * (travelled_m_ + worst_shift_m_) <= margin_m_);
+    const bool anew = !holds();
     if (anew) make(discs);
     pick(discs, pairs);
     return anew;

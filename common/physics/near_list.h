@@ -38,6 +38,11 @@ class NearList {
         shift_m_[disc] += by_m + slop_m_;
         worst_shift_m_ = shift_m_[disc] > worst_shift_m_ ? shift_m_[disc] : worst_shift_m_;
     }
+    // While the list holds no disc is further than this from where it was when it was made.
+    Scalar longest_way_m() const { return Scalar(0.5) * margin_m_ + slop_m_; }
+    bool holds() const {
+        return holds_ && Scalar(2) * (travelled_m_ + worst_shift_m_) <= margin_m_;
+    }
     // It will soon be told to have moved. Inlined, or gcc leaves calls away that only fetch.
     [[gnu::always_inline]] void fetch(std::uint32_t disc) const {
         __builtin_prefetch(shift_m_.data() + disc, 1);

@@ -23,7 +23,7 @@ namespace {
 
 // Lists of near pairs after which the cells are fitted anew and neighbours brought together in
 // memory.
-constexpr std::uint32_t kListsPerOrder = 16;
+constexpr std::uint32_t kListsPerOrder = 32;
 // How many hits ahead of its turn a hit's bodies are fetched.
 constexpr std::size_t kHitsAhead = 12;
 
@@ -109,8 +109,9 @@ class DiscreteSolver final : public Solver<Scalar> {
     RoomyVector<std::uint32_t> old_slot_;
     RoomyVector<Scalar> old_;
     std::vector<std::uint32_t> outside_;
-    Box inside_;                        // of the periodic box, both ends inclusive
-    std::vector<std::uint32_t> slots_;  // of those at the boundary
+    std::span<const std::uint32_t> near_walls_;  // who may reach one while near_ holds; in outside_
+    Box inside_;                                 // of the periodic box, both ends inclusive
+    std::vector<std::uint32_t> slots_;           // of those at the boundary
 };
 
 template <typename Scalar>
@@ -147,9 +148,7 @@ void DiscreteSolver<Scalar>::gather(const Bodies<Scalar>& bodies) {
     const bool same_bodies = holds_just(bodies);
     if (!same_bodies) take_in_order_of_ids(bodies);
     const std::uint32_t bodies_count = count();
-    for (RoomyVector<Scalar>* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) {
-        values->resize(bodies_count);
-    }
+    for (auto* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_}) values->resize(bodies_count);
     bool same_places = same_bodies;
     for (std::uint32_t i = 0; i < bodies_count; ++i) {
         const Vec &position = bodies.position_m[slot_[i]],
@@ -266,19 +265,26 @@ void DiscreteSolver<Scalar>::find_pairs() {
     pairs_.clear();
     const bool listed = near_.find_overlaps(discs(), pairs_);
     hits_.clear();
-    for (const auto [a, b] : pairs_) {
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const auto [a, b] = pairs_[k];
+        const DiscPair& ahead = pairs_[std::min(k + kHitsAhead, pairs_.size() - 1)];
+        for (const std::uint32_t i : {ahead.a, ahead.b}) __builtin_prefetch(slot_.data() + i);
         hits_.push_back(slot_[a] < slot_[b] ? SlotPair{slot_[a], slot_[b], a, b}
                                             : SlotPair{slot_[b], slot_[a], b, a});
     }
     hit_order_.sort(hits_, static_cast<std::uint32_t>(place_.size()));
-    if (listed) --lists_until_order_;
+    if (!listed) return;
+    --lists_until_order_;
+    if (!model_->walls) return;
+    const Box room = room_for(*model_->walls, largest_radius_m_);
+    const Vec way_m = Vec::Constant(near_.longest_way_m());
+    near_walls_ = outside({room.min_m + way_m, room.max_m - way_m});
 }
 
 template <typename Scalar>
 void DiscreteSolver<Scalar>::bring_neighbours_together() {
     near_.read_order(order_);
-    for (RoomyVector<Scalar>* values :
-         {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
+    for (auto* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
         if (values->empty()) continue;
         old_.swap(*values);
         values->clear();
@@ -422,7 +428,7 @@ template <bool kEqualRadii>
 void DiscreteSolver<Scalar>::reflect_from_walls(Scalar time_s) {
     const Box room = room_for(*model_->walls, largest_radius_m_);
     slots_.clear();
-    for (const std::uint32_t i : outside(room)) {
+    for (const std::uint32_t i : near_.holds() ? near_walls_ : outside(room)) {
         const Scalar radius = kEqualRadii ? largest_radius_m_ : radius_m_[i];
         const Box own = room_for(*model_->walls, radius);
         if (!is_within<Scalar>(own, x_m_[i], y_m_[i])) slots_.push_back(slot_[i]);
@@ -476,8 +482,7 @@ void DiscreteSolver<Scalar>::drop(std::uint32_t slot, Scalar time_s) {
         values.pop_back();
     };
     take_from_end(slot_);
-    for (RoomyVector<Scalar>* values :
-         {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
+    for (auto* values : {&x_m_, &y_m_, &vx_mps_, &vy_mps_, &radius_m_, &inverse_mass_per_kg_}) {
         take_from_end(*values);
     }
 }
