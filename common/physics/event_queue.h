@@ -32,14 +32,17 @@ struct Event {
     [[no_unique_address]] Image image = {};
 
     bool operator>(const Event& other) const {
+        if (time_s != other.time_s) [[likely]]
+            return time_s > other.time_s;
         return std::tie(time_s, kind, a, b, image) >
                std::tie(other.time_s, other.kind, other.a, other.b, other.image);
     }
 };
 
-// The span is cut into slices, as many as there were events in the span before. Only those of the
-// present slice are kept in order, as a heap; a later one is in a list of its slice, which costs
-// the same however many there are. No allocation after warm-up.
+// The span is cut into slices, as many as suit the number of events in the span before. Only those
+// of the present slice are kept in order, and in a heap if they are many. What is pushed before
+// anything is taken is sorted by slices at once; what comes later is in a list of its slice. Either
+// costs the same however many there are. No allocation after warm-up.
 template <typename Event>
 class EventQueue {
   public:
@@ -51,10 +54,30 @@ class EventQueue {
     void begin(Scalar from_s, Scalar until_s);
     void push(const Event& event);
 
-    bool empty();
+    bool empty() {
+        if (few_count_ > 0 && !is_open_) return false;
+        if (many_.empty() || is_open_) go_on();
+        return few_count_ == 0 && many_.empty();
+    }
     // Of a queue that is not empty, as empty() has just told.
-    const Event& next() const { return heap_.front(); }
-    Event pop();
+    const Event& next() const { return few_count_ > 0 ? few_[few_count_ - 1] : many_.front(); }
+    Event pop() {
+        if (few_count_ > 0) return few_[--few_count_];
+        return pop_of_many();
+    }
+
+    // Which slice is the present one, and visit(event) for those of another one that are known yet.
+    std::uint32_t slice() const { return slice_; }
+    template <typename Visit>
+    void for_each_in(std::uint32_t slice, Visit&& visit) const {
+        if (is_open_ || slice >= first_.size()) return;
+        for (std::uint32_t at = sorted_end_[slice]; at < sorted_end_[slice + 1]; ++at) {
+            visit(sorted_[at]);
+        }
+        for (std::uint32_t node = first_[slice]; node != kNoNode; node = nodes_[node].next) {
+            visit(nodes_[node].event);
+        }
+    }
 
   private:
     static constexpr std::uint32_t kNoNode = 0xffffffff;
@@ -62,18 +85,27 @@ class EventQueue {
         Event event;
         std::uint32_t next = kNoNode;
     };
-    static constexpr std::uint32_t kEventsPerSlice = 4;
+    static constexpr std::uint32_t kEventsPerSlice = 2;
+    static constexpr std::uint32_t kMostFew = 16;
     static constexpr std::size_t kUsualEventsPerBody = 4;
     static constexpr std::uint32_t kMostSlices = 1U << 20;
 
     // Never decreases with the time.
     std::uint32_t slice_of(Scalar time_s) const;
-    void push_now(const Event& event) {
-        heap_.push_back(event);
-        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
-    }
+    void push_now(const Event& event);
+    void go_on();
+    void sort_batch();
+    Event pop_of_many();
 
-    std::vector<Event> heap_;
+    // Of the present slice, and earlier: the few have the earliest at the end, and are none while
+    // there are many, which are a heap.
+    Event few_[kMostFew];
+    std::uint32_t few_count_ = 0;
+    std::vector<Event> many_;
+    // Of all slices, as long as nothing is taken; then, by slice.
+    std::vector<Event> batch_, sorted_;
+    std::vector<std::uint32_t> sorted_end_;  // of the slice before
+    bool is_open_ = false;
     std::vector<std::uint32_t> first_;  // node by slice
     std::vector<Node> nodes_;
     std::uint32_t free_ = kNoNode;
@@ -86,17 +118,22 @@ class EventQueue {
 
 template <typename Event>
 void EventQueue<Event>::reserve(std::uint32_t bodies) {
-    heap_.reserve(bodies);
+    many_.reserve(bodies);
     first_.reserve(bodies);
+    sorted_end_.reserve(bodies + 2);
+    for (std::vector<Event>* all : {&batch_, &sorted_}) all->reserve(kUsualEventsPerBody * bodies);
     nodes_.reserve(kUsualEventsPerBody * bodies);
 }
 
 template <typename Event>
 void EventQueue<Event>::begin(Scalar from_s, Scalar until_s) {
     const std::uint32_t slices = std::clamp(pushed_ / kEventsPerSlice, 1U, kMostSlices);
-    heap_.clear();
+    few_count_ = 0;
+    many_.clear();
     nodes_.clear();
+    batch_.clear();
     first_.assign(slices, kNoNode);
+    is_open_ = true;
     free_ = kNoNode;
     slice_ = waiting_ = pushed_ = 0;
     from_s_ = from_s;
@@ -115,6 +152,7 @@ std::uint32_t EventQueue<Event>::slice_of(Scalar time_s) const {
 template <typename Event>
 void EventQueue<Event>::push(const Event& event) {
     ++pushed_;
+    if (is_open_) return batch_.push_back(event);
     const std::uint32_t slice = slice_of(event.time_s);
     if (slice <= slice_) return push_now(event);
     std::uint32_t node = free_;
@@ -130,9 +168,31 @@ void EventQueue<Event>::push(const Event& event) {
 }
 
 template <typename Event>
-bool EventQueue<Event>::empty() {
-    while (heap_.empty() && waiting_ > 0) {
-        std::uint32_t node = std::exchange(first_[++slice_], kNoNode);
+void EventQueue<Event>::push_now(const Event& event) {
+    if (few_count_ < kMostFew && many_.empty()) {
+        std::uint32_t at = few_count_++;
+        for (; at > 0 && event > few_[at - 1]; --at) few_[at] = few_[at - 1];
+        few_[at] = event;
+        return;
+    }
+    const auto add = [&](const Event& one) {
+        many_.push_back(one);
+        std::push_heap(many_.begin(), many_.end(), std::greater<>());
+    };
+    std::for_each(few_, few_ + std::exchange(few_count_, 0), add);
+    add(event);
+}
+
+template <typename Event>
+void EventQueue<Event>::go_on() {
+    if (is_open_) sort_batch();
+    while (few_count_ == 0 && many_.empty() && waiting_ > 0) {
+        ++slice_;
+        for (std::uint32_t at = sorted_end_[slice_]; at < sorted_end_[slice_ + 1]; ++at) {
+            push_now(sorted_[at]);
+            --waiting_;
+        }
+        std::uint32_t node = std::exchange(first_[slice_], kNoNode);
         while (node != kNoNode) {
             push_now(nodes_[node].event);
             --waiting_;
@@ -140,14 +200,30 @@ bool EventQueue<Event>::empty() {
             free_ = std::exchange(node, next);
         }
     }
-    return heap_.empty();
+}
+
+// Counts lie two places on, so that they turn into ends while slices are filled.
+template <typename Event>
+void EventQueue<Event>::sort_batch() {
+    is_open_ = false;
+    sorted_end_.assign(first_.size() + 2, 0);
+    for (const Event& event : batch_) ++sorted_end_[slice_of(event.time_s) + 2];
+    for (std::size_t slice = 2; slice < sorted_end_.size(); ++slice) {
+        sorted_end_[slice] += sorted_end_[slice - 1];
+    }
+    sorted_.resize(batch_.size());
+    for (const Event& event : batch_) {
+        sorted_[sorted_end_[slice_of(event.time_s) + 1]++] = event;
+    }
+    waiting_ = static_cast<std::uint32_t>(batch_.size()) - sorted_end_[1];
+    for (std::uint32_t at = 0; at < sorted_end_[1]; ++at) push_now(sorted_[at]);
 }
 
 template <typename Event>
-Event EventQueue<Event>::pop() {
-    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-    const Event event = heap_.back();
-    heap_.pop_back();
+Event EventQueue<Event>::pop_of_many() {
+    std::pop_heap(many_.begin(), many_.end(), std::greater<>());
+    const Event event = many_.back();
+    many_.pop_back();
     return event;
 }
 
