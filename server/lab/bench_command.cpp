@@ -54,7 +54,9 @@ std::string command_of(const Options& options) {
 BenchMatrix matrix_of(const Options& options) {
     BenchMatrix matrix{options.engines, options.balls, options.packings, {}, options.speeds};
     if (matrix.engines.empty()) {
-        for (const EngineInfo& engine : engines()) matrix.engines.push_back(engine.name);
+        for (const EngineInfo& engine : engines()) {
+            if (!engine.is_only_by_name) matrix.engines.push_back(engine.name);
+        }
     }
     for (const std::string& radii : options.radii) {
         matrix.radii.push_back(radii == "equal" ? Radii::kEqual : Radii::kUnequal);

@@ -12,6 +12,7 @@ using lab::Radii;
 std::vector<std::string> all_engines(bool with_floor) {
     std::vector<std::string> names;
     for (const lab::EngineInfo& engine : lab::engines()) {
+        if (engine.is_only_by_name) continue;
         if (with_floor || !engine.is_floor) names.push_back(engine.name);
     }
     return names;
@@ -34,8 +35,11 @@ std::vector<BenchCell> target_cells() {
         "discrete-float", "discrete-double", "swept-float",   "swept-double", "event-float",
         "event-double",   "box2d",           "chipmunk-hash", "chipmunk-tree"};
     auto cells = lab::cells_of({engines, {10'000}, {0.3}, {Radii::kEqual}, {kSlow, kFast}});
-    cells.push_back({"event-double", {10'000, 0.1, Radii::kEqual, kSlow}});
-    cells.push_back({"event-double", {100'000, 0.3, Radii::kEqual, kSlow}});
+    for (const char* const engine : {"event-double", "event-double-unread"}) {
+        cells.push_back({engine, {10'000, 0.1, Radii::kEqual, kSlow}});
+        cells.push_back({engine, {100'000, 0.3, Radii::kEqual, kSlow}});
+    }
+    cells.push_back({"event-double-unread", {10'000, 0.3, Radii::kEqual, kSlow}});
     cells.push_back({"discrete-double", {1'000'000, 0.3, Radii::kEqual, kSlow}});
     return cells;
 }

@@ -24,7 +24,8 @@ class Engine {
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
-    // To the end of the tick, with all balls ready to be read.
+    // To the end of the tick, with all balls ready to be read, but for an engine that says it is
+    // not read.
     virtual void step() = 0;
     // Of body `i` of the scene.
     virtual BallState ball(std::size_t i) const = 0;
@@ -39,6 +40,8 @@ struct EngineInfo {
     std::size_t max_balls = physics::kMaxBodies;
     // A floor and no physics: it lets balls through each other, and nobody minds.
     bool is_floor = false;
+    // Compared with others only where it is named.
+    bool is_only_by_name = false;
 };
 
 // All of this build, in the order of tables. Box2D and Chipmunk are among them when their packages

@@ -22,14 +22,14 @@ using physics::SolverKind;
 template <typename Scalar>
 class WorldEngine : public Engine {
   public:
-    WorldEngine(const Scene& scene, SolverKind solver, double tick_s)
-        : world_(scene, {solver, 1}), tick_s_(static_cast<Scalar>(tick_s)) {}
+    WorldEngine(const Scene& scene, SolverKind solver, double tick_s, bool is_read = true)
+        : world_(scene, {solver, 1}), tick_s_(static_cast<Scalar>(tick_s)), is_read_(is_read) {}
 
     // A solver may keep positions to itself until one is asked for, which brings all up to date.
     // The peers have theirs at hand after every step, and a game reads them.
     void step() override {
         world_.step(tick_s_);
-        if (world_.size() > 0) world_.position_m(world_.ids().front());
+        if (is_read_ && world_.size() > 0) world_.position_m(world_.ids().front());
     }
 
     BallState ball(std::size_t i) const override {
@@ -44,6 +44,7 @@ class WorldEngine : public Engine {
   private:
     physics::World<Scalar> world_;
     Scalar tick_s_;
+    bool is_read_;
 };
 
 using Maker = std::function<std::unique_ptr<Engine>(const Scene&, double tick_s)>;
@@ -96,6 +97,12 @@ const std::vector<Known>& known() {
         add_solver(all, SolverKind::kDiscrete, physics::kMaxBodies);
         add_solver(all, SolverKind::kSwept, physics::kMaxBodies);
         add_solver(all, SolverKind::kEvent, physics::kMaxBodies);
+        all.push_back(
+            {{"event-double-unread", "event double, not read", physics::kMaxBodies, false, true},
+             [](const Scene& scene, double tick_s) {
+                 return std::make_unique<WorldEngine<double>>(scene, SolverKind::kEvent, tick_s,
+                                                              false);
+             }});
         add_solver(all, SolverKind::kSeed, 2'000);  // looks at every pair
         add_peers(all);
         all.push_back({{"memory-float", "memory, float", physics::kMaxBodies, true},
