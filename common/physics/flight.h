@@ -1,6 +1,7 @@
 // A body in straight flight, and those about it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "common/physics/scene.h"
@@ -14,8 +15,9 @@ struct alignas(64) Flight {
     Vec2<Scalar> velocity_mps = Vec2<Scalar>::Zero();
     double since_s = 0.0;
     Scalar radius_m = Scalar(0);
+    Scalar mass_kg = Scalar(0);
     std::uint32_t events = 0;
-    std::uint32_t cell[2] = {0, 0};
+    std::uint32_t index = 0;  // of the body, for others
 
     Vec2<Scalar> position_at(double time_s) const {
         const Scalar since = static_cast<Scalar>(time_s - since_s);
@@ -56,6 +58,15 @@ struct Approach {
         const Vec2<Scalar> here = one.position_at(from_s);
         x_m = (here.x() - about.x_m[k]) - shift_m.x();
         y_m = (here.y() - about.y_m[k]) - shift_m.y();
+    }
+    // The same of two flights.
+    Approach(const Flight<Scalar>& one, const Flight<Scalar>& other)
+        : from_s(std::max(one.since_s, other.since_s)),
+          x_mps(one.velocity_mps.x() - other.velocity_mps.x()),
+          y_mps(one.velocity_mps.y() - other.velocity_mps.y()) {
+        const Vec2<Scalar> here = one.position_at(from_s), there = other.position_at(from_s);
+        x_m = here.x() - there.x();
+        y_m = here.y() - there.y();
     }
     Scalar rate() const { return x_m * x_mps + y_m * y_mps; }
     Scalar aside() const { return x_m * y_mps - y_m * x_mps; }

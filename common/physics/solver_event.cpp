@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/physics/coasting.h"
+#include "common/physics/crowd_coasting.h"
 #include "common/physics/diagnostics.h"
 #include "common/physics/hit_record.h"
 #include "common/physics/impact.h"
@@ -19,18 +20,24 @@ namespace {
 
 // Touching is never more than this part of the reach, however coarse the coordinates.
 constexpr double kTouchWithin = 0.01;
-
 template <typename Scalar>
+constexpr Scalar kLookFactor = static_cast<Scalar>(1.0 + 2.0 * kTouchWithin);
+
+template <typename Scalar, typename Future>
 class EventSolver final : public Solver<Scalar> {
   public:
+    // False when it is not for such bodies.
+    bool take_over(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+        return coasting_.begin(bodies, model);
+    }
     DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
                               Record<Scalar>& record) override;
-    void forget() override { knows_bodies_ = false; }
     void synchronise_positions(Bodies<Scalar>& bodies) override;
     void synchronise_velocities(Bodies<Scalar>& bodies) override;
 
   private:
     using Vec = Vec2<Scalar>;
+    using Flight = physics::Flight<Scalar>;
     struct Pair {
         std::uint32_t a, b;
     };
@@ -38,14 +45,15 @@ class EventSolver final : public Solver<Scalar> {
     // Bodies are numbered as in coasting_, but in together_ as in Bodies. These return how many
     // events they were.
     std::uint32_t process(const Due& due);
-    std::uint32_t meet(std::uint32_t a, std::uint32_t b);
+    std::uint32_t meet(const Due& due);
     std::uint32_t hit_wall(std::uint32_t body, std::uint32_t side);
     std::uint32_t fall(std::uint32_t body);
     std::uint32_t collide_together(const Due& due);
 
-    void touch(std::uint32_t a, std::uint32_t b, const Vec& separation_m, Scalar slack_s);
+    static void touch(Flight& first, Flight& second, const Vec& separation_m, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
-    bool touch_others(std::uint32_t a, std::uint32_t b);
+    bool touches_others(std::uint32_t body);
+    bool touch_others(const Turning<Scalar>& a, const Turning<Scalar>& b);
     bool touches_any_wall(std::uint32_t body) const;
     bool are_touching(std::uint32_t a, std::uint32_t b, const Vec& separation_m) const;
     bool touches_wall(std::uint32_t body, std::uint32_t side) const;
@@ -67,23 +75,21 @@ class EventSolver final : public Solver<Scalar> {
     const Model<Scalar>* model_ = nullptr;
     Record<Scalar>* record_ = nullptr;
     Scalar span_s_ = Scalar(0);
-    bool knows_bodies_ = false;
     bool positions_shown_ = true, velocities_shown_ = true;  // Bodies hold the present ones
 
-    Coasting<Scalar> coasting_;
+    Future coasting_;
     ContactSet<Scalar> together_;
     std::vector<Pair> touching_;  // of together_
 };
 
-template <typename Scalar>
-DriftReport<Scalar> EventSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Model<Scalar>& model,
-                                               Scalar span_s, Record<Scalar>& record) {
+template <typename Scalar, typename Future>
+DriftReport<Scalar> EventSolver<Scalar, Future>::drift(Bodies<Scalar>& bodies,
+                                                       const Model<Scalar>& model, Scalar span_s,
+                                                       Record<Scalar>& record) {
     bodies_ = &bodies;
     model_ = &model;
     record_ = &record;
     span_s_ = span_s;
-    if (!knows_bodies_) coasting_.begin(bodies, model);
-    knows_bodies_ = true;
     positions_shown_ = velocities_shown_ = false;
     DriftReport<Scalar> report;
     const std::uint32_t budget = event_budget(bodies.ids.size());
@@ -103,37 +109,35 @@ DriftReport<Scalar> EventSolver<Scalar>::drift(Bodies<Scalar>& bodies, const Mod
     return report;
 }
 
-template <typename Scalar>
-void EventSolver<Scalar>::synchronise_positions(Bodies<Scalar>& bodies) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::synchronise_positions(Bodies<Scalar>& bodies) {
     if (std::exchange(positions_shown_, true)) return;
     for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
         const std::uint32_t index = coasting_.living_at(body);
-        if (index == Coasting<Scalar>::kNobody) continue;
+        if (index == Future::kNobody) continue;
         const Vec position = coasting_.position_m(body);
         bodies.position_m[index] =
             model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
     }
 }
 
-template <typename Scalar>
-void EventSolver<Scalar>::synchronise_velocities(Bodies<Scalar>& bodies) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::synchronise_velocities(Bodies<Scalar>& bodies) {
     if (std::exchange(velocities_shown_, true)) return;
     for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
         const std::uint32_t index = coasting_.living_at(body);
-        if (index == Coasting<Scalar>::kNobody) continue;
+        if (index == Future::kNobody) continue;
         bodies.velocity_mps[index] = coasting_.flight(body).velocity_mps;
     }
 }
 
-template <typename Scalar>
-std::uint32_t EventSolver<Scalar>::process(const Due& due) {
+template <typename Scalar, typename Future>
+std::uint32_t EventSolver<Scalar, Future>::process(const Due& due) {
     switch (due.what) {
         case Happening::kMeeting:
-            return touch_others(due.body, due.other) ? collide_together(due)
-                                                     : meet(due.body, due.other);
+            return meet(due);
         case Happening::kWall:
-            return touch_others(due.body, due.body) ? collide_together(due)
-                                                    : hit_wall(due.body, due.other);
+            return touches_others(due.body) ? collide_together(due) : hit_wall(due.body, due.other);
         case Happening::kFall:
             return fall(due.body);
         case Happening::kNothing:
@@ -143,51 +147,55 @@ std::uint32_t EventSolver<Scalar>::process(const Due& due) {
     return 0;
 }
 
-// A grazing pair may turn out, to the last bit, not to approach any more; then nothing happens.
-template <typename Scalar>
-std::uint32_t EventSolver<Scalar>::meet(std::uint32_t due, std::uint32_t other) {
-    const bool in_order = coasting_.index_of(due) < coasting_.index_of(other);
-    const std::uint32_t a = in_order ? due : other, b = in_order ? other : due;
-    const Scalar slack_s = clock_slack_s(a, b);
-    coasting_.move_to_now(a);
-    coasting_.move_to_now(b);
-    const Vec velocity_a = coasting_.flight(a).velocity_mps;
-    const Vec velocity_b = coasting_.flight(b).velocity_mps;
-    const Vec met_at = coasting_.separation_m(a, b);
-    if (!(met_at.dot(velocity_a - velocity_b) < Scalar(0))) {
-        coasting_.predict(due);
-        return 0;
+// What a collision would do is found first, and nothing is changed before it is known that they
+// touch nobody else. A grazing pair may turn out, to the last bit, not to approach any more; then
+// nothing happens.
+template <typename Scalar, typename Future>
+std::uint32_t EventSolver<Scalar, Future>::meet(const Due& due) {
+    const bool in_order = coasting_.index_of(due.body) < coasting_.index_of(due.other);
+    const std::uint32_t a = in_order ? due.body : due.other, b = in_order ? due.other : due.body;
+    Flight one = coasting_.flight_from_now(a), two = coasting_.flight_from_now(b);
+    const Vec met_at = coasting_.separation_m(one, two);
+    const Scalar depth = penetration(met_at.norm(), one.radius_m, two.radius_m);
+    const Vec velocity_a = one.velocity_mps, velocity_b = two.velocity_mps;
+    Vec separation = met_at;
+    if (met_at.dot(velocity_a - velocity_b) < Scalar(0)) {
+        touch(one, two, met_at, clock_slack_s(a, b));
+        separation = coasting_.separation_m(one, two);
     }
-    const Scalar radius_a = coasting_.flight(a).radius_m, radius_b = coasting_.flight(b).radius_m;
-    const Scalar depth = penetration(met_at.norm(), radius_a, radius_b);
-    touch(a, b, met_at, slack_s);
-    const Vec separation = coasting_.separation_m(a, b);
     const Mover<Scalar> first{separation, velocity_a, coasting_.mass_kg(a)};
     const Mover<Scalar> second{Vec::Zero(), velocity_b, coasting_.mass_kg(b)};
     const auto hit = impact(first, second, restitution_of(was_just_hit(a) || was_just_hit(b)));
+    const Turning<Scalar> turn_a{a, one.position_m, hit ? hit->velocity_1_mps : velocity_a};
+    const Turning<Scalar> turn_b{b, two.position_m, hit ? hit->velocity_2_mps : velocity_b};
+    if (in_order ? touch_others(turn_a, turn_b) : touch_others(turn_b, turn_a)) {
+        return collide_together(due);
+    }
+    coasting_.set_position(a, one.position_m);
+    coasting_.set_position(b, two.position_m);
     if (!hit) {
-        coasting_.predict(due);
+        coasting_.predict(due.body);
         return 0;
     }
     const Vec position = present_position_m(a);
     record_->contacts.push_back(
-        {id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
+        {id_of(a), id_of(b), time_in_step(), position - one.radius_m * hit->normal, hit->normal,
          hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
          velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
     account(record_->contacts.back(), record_->audit);
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
     coasting_.keep_apart(a, b);
-    if (coasting_.is_immovable(other)) {
-        coasting_.predict_as_seen(due);
+    if (coasting_.is_immovable(due.other)) {
+        coasting_.predict_as_seen(due.body);
     } else {
-        coasting_.predict_as_seen(due, other);
+        coasting_.predict_as_seen(due.body, due.other);
     }
     return 1;
 }
 
-template <typename Scalar>
-std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t side) {
+template <typename Scalar, typename Future>
+std::uint32_t EventSolver<Scalar, Future>::hit_wall(std::uint32_t body, std::uint32_t side) {
     const std::uint32_t axis = side / 2;
     const bool at_max = side % 2 == 1;
     const Scalar radius = coasting_.flight(body).radius_m;
@@ -211,8 +219,8 @@ std::uint32_t EventSolver<Scalar>::hit_wall(std::uint32_t body, std::uint32_t si
     return 1;
 }
 
-template <typename Scalar>
-std::uint32_t EventSolver<Scalar>::fall(std::uint32_t body) {
+template <typename Scalar, typename Future>
+std::uint32_t EventSolver<Scalar, Future>::fall(std::uint32_t body) {
     record_->falls.push_back({id_of(body), time_in_step(), coasting_.position_m(body),
                               coasting_.flight(body).velocity_mps});
     coasting_.remove(body);
@@ -220,8 +228,8 @@ std::uint32_t EventSolver<Scalar>::fall(std::uint32_t body) {
     return 1;
 }
 
-template <typename Scalar>
-std::uint32_t EventSolver<Scalar>::collide_together(const Due& due) {
+template <typename Scalar, typename Future>
+std::uint32_t EventSolver<Scalar, Future>::collide_together(const Due& due) {
     const auto body_at = [&](std::uint32_t index) { return coasting_.body_at(index); };
     together_.begin(bodies_->slots());
     touching_.clear();
@@ -264,8 +272,8 @@ std::uint32_t EventSolver<Scalar>::collide_together(const Due& due) {
     return done.hits;
 }
 
-template <typename Scalar>
-void EventSolver<Scalar>::gather_about(std::uint32_t body) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::gather_about(std::uint32_t body) {
     coasting_.for_each_near(body, [&](std::uint32_t other, const Vec& separation) {
         if (other == body || !are_touching(body, other, separation)) return;
         if (coasting_.is_immovable(body) && coasting_.is_immovable(other)) return;
@@ -277,71 +285,78 @@ void EventSolver<Scalar>::gather_about(std::uint32_t body) {
     }
 }
 
-template <typename Scalar>
-void EventSolver<Scalar>::join(std::uint32_t body) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::join(std::uint32_t body) {
     together_.add(coasting_.index_of(body), coasting_.flight(body).velocity_mps,
                   coasting_.mass_kg(body), was_just_hit(body));
     show(body);
 }
 
-template <typename Scalar>
-void EventSolver<Scalar>::touch_together(std::uint32_t a, std::uint32_t b) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::touch_together(std::uint32_t a, std::uint32_t b) {
     touching_.push_back({a, b});
     together_.touch(coasting_.index_of(a), coasting_.index_of(b), coasting_.separation_m(a, b));
 }
 
 // For the record: where the body is now.
-template <typename Scalar>
-void EventSolver<Scalar>::show(std::uint32_t body) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::show(std::uint32_t body) {
     bodies_->position_m[coasting_.index_of(body)] = present_position_m(body);
 }
 
-template <typename Scalar>
-Vec2<Scalar> EventSolver<Scalar>::present_position_m(std::uint32_t body) const {
+template <typename Scalar, typename Future>
+Vec2<Scalar> EventSolver<Scalar, Future>::present_position_m(std::uint32_t body) const {
     const Vec position = coasting_.position_m(body);
     return model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
 }
 
 // After moving to the time of impact, which is only as fine as the clock, the pair is moved on
 // along its own velocities until it just touches.
-template <typename Scalar>
-void EventSolver<Scalar>::touch(std::uint32_t a, std::uint32_t b, const Vec& separation_m,
-                                Scalar slack_s) {
+template <typename Scalar, typename Future>
+void EventSolver<Scalar, Future>::touch(Flight& first, Flight& second, const Vec& separation_m,
+                                        Scalar slack_s) {
     const Vec& d = separation_m;
-    const auto &first = coasting_.flight(a), &second = coasting_.flight(b);
     const Scalar distance = d.norm();
     const Scalar closing = -d.dot(first.velocity_mps - second.velocity_mps) / distance;
     const Scalar gap = distance - (first.radius_m + second.radius_m);
     if (!(std::abs(gap) <= closing * slack_s)) return;
     const Scalar wait_s = gap / closing;
-    coasting_.set_position(a, first.position_m + first.velocity_mps * wait_s);
-    coasting_.set_position(b, second.position_m + second.velocity_mps * wait_s);
+    first.position_m += first.velocity_mps * wait_s;
+    second.position_m += second.velocity_mps * wait_s;
 }
 
 // Before the two are moved: the time of impact was counted from the later of their last events, and
 // their ways from each one's own.
-template <typename Scalar>
-Scalar EventSolver<Scalar>::clock_slack_s(std::uint32_t a, std::uint32_t b) const {
+template <typename Scalar, typename Future>
+Scalar EventSolver<Scalar, Future>::clock_slack_s(std::uint32_t a, std::uint32_t b) const {
     const double flown_s = coasting_.flown_s(a) + coasting_.flown_s(b);
     const double slack_s = flown_s * static_cast<double>(std::numeric_limits<Scalar>::epsilon()) +
                            coasting_.clock_s() * std::numeric_limits<double>::epsilon();
     return static_cast<Scalar>(kClockSlack * slack_s);
 }
 
-// Whether two that meet, or one that hits a wall, touch anything else.
-template <typename Scalar>
-bool EventSolver<Scalar>::touch_others(std::uint32_t a, std::uint32_t b) {
-    constexpr Scalar kFactor = static_cast<Scalar>(1.0 + 2.0 * kTouchWithin);
-    const auto touches = [&](std::uint32_t body, std::uint32_t other, const Vec& separation) {
-        return are_touching(body, other, separation);
-    };
-    if (a == b) return coasting_.look_around(a, kFactor, touches);
-    return touches_any_wall(a) || touches_any_wall(b) ||
-           coasting_.look_around_both(a, b, kFactor, touches);
+// Whether one that hits a wall touches anybody.
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::touches_others(std::uint32_t body) {
+    return coasting_.look_around(body, kLookFactor<Scalar>,
+                                 [&](std::uint32_t one, std::uint32_t other, const Vec& apart_m) {
+                                     return are_touching(one, other, apart_m);
+                                 });
 }
 
-template <typename Scalar>
-bool EventSolver<Scalar>::touches_any_wall(std::uint32_t body) const {
+// Whether two that meet, and would fly on like this, touch anything else.
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::touch_others(const Turning<Scalar>& a, const Turning<Scalar>& b) {
+    return touches_any_wall(a.body) || touches_any_wall(b.body) ||
+           coasting_.look_around_both(
+               a, b, kLookFactor<Scalar>,
+               [&](std::uint32_t one, std::uint32_t other, const Vec& apart_m) {
+                   return are_touching(one, other, apart_m);
+               });
+}
+
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::touches_any_wall(std::uint32_t body) const {
     if (!model_->walls || !coasting_.is_at_border(body)) return false;
     for (std::uint32_t side = 0; side < 4; ++side) {
         if (touches_wall(body, side)) return true;
@@ -349,9 +364,9 @@ bool EventSolver<Scalar>::touches_any_wall(std::uint32_t body) const {
     return false;
 }
 
-template <typename Scalar>
-bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b,
-                                       const Vec& separation_m) const {
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::are_touching(std::uint32_t a, std::uint32_t b,
+                                               const Vec& separation_m) const {
     constexpr Scalar kFar = static_cast<Scalar>((1.0 + kTouchWithin) * (1.0 + kTouchWithin));
     const Scalar reach = coasting_.flight(a).radius_m + coasting_.flight(b).radius_m;
     const Scalar squared = separation_m.squaredNorm();
@@ -362,8 +377,8 @@ bool EventSolver<Scalar>::are_touching(std::uint32_t a, std::uint32_t b,
     return std::abs(std::sqrt(squared) - reach) <= tolerance;
 }
 
-template <typename Scalar>
-bool EventSolver<Scalar>::touches_wall(std::uint32_t body, std::uint32_t side) const {
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::touches_wall(std::uint32_t body, std::uint32_t side) const {
     if (!model_->walls) return false;
     const std::uint32_t axis = side / 2;
     const Scalar radius = coasting_.flight(body).radius_m;
@@ -374,31 +389,65 @@ bool EventSolver<Scalar>::touches_wall(std::uint32_t body, std::uint32_t side) c
 }
 
 // The largest length that went into the body's place.
-template <typename Scalar>
-Scalar EventSolver<Scalar>::extent_m(std::uint32_t body) const {
+template <typename Scalar, typename Future>
+Scalar EventSolver<Scalar, Future>::extent_m(std::uint32_t body) const {
     return std::max(coasting_.flight(body).position_m.cwiseAbs().maxCoeff(),
                     coasting_.position_m(body).cwiseAbs().maxCoeff());
 }
 
-template <typename Scalar>
-Scalar EventSolver<Scalar>::time_in_step() const {
+template <typename Scalar, typename Future>
+Scalar EventSolver<Scalar, Future>::time_in_step() const {
     return std::clamp(static_cast<Scalar>(coasting_.since_begin_s()), Scalar(0), span_s_);
 }
 
-template <typename Scalar>
-bool EventSolver<Scalar>::was_just_hit(std::uint32_t body) const {
+template <typename Scalar, typename Future>
+bool EventSolver<Scalar, Future>::was_just_hit(std::uint32_t body) const {
     return model_->restitution < Scalar(1) &&
            coasting_.last_hit_ago_s(body) < kElasticWithin * static_cast<double>(span_s_);
 }
 
+// For what there is now: a crowd in windows of time, others with a calendar.
+template <typename Scalar>
+class EventSolverOfAll final : public Solver<Scalar> {
+  public:
+    explicit EventSolverOfAll(Foresight foresight) : foresight_(foresight) {}
+
+    DriftReport<Scalar> drift(Bodies<Scalar>& bodies, const Model<Scalar>& model, Scalar span_s,
+                              Record<Scalar>& record) override {
+        if (present_ == nullptr) present_ = &suitable(bodies, model);
+        return present_->drift(bodies, model, span_s, record);
+    }
+    void forget() override { present_ = nullptr; }
+    void synchronise_positions(Bodies<Scalar>& bodies) override {
+        if (present_ != nullptr) present_->synchronise_positions(bodies);
+    }
+    void synchronise_velocities(Bodies<Scalar>& bodies) override {
+        if (present_ != nullptr) present_->synchronise_velocities(bodies);
+    }
+
+  private:
+    Solver<Scalar>& suitable(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+        if (foresight_ == Foresight::kSuitable && of_crowds_.take_over(bodies, model)) {
+            return of_crowds_;
+        }
+        of_any_.take_over(bodies, model);
+        return of_any_;
+    }
+
+    Foresight foresight_;
+    EventSolver<Scalar, CrowdCoasting<Scalar>> of_crowds_;
+    EventSolver<Scalar, Coasting<Scalar>> of_any_;
+    Solver<Scalar>* present_ = nullptr;
+};
+
 }  // namespace
 
 template <typename Scalar>
-std::unique_ptr<Solver<Scalar>> make_event_solver() {
-    return std::make_unique<EventSolver<Scalar>>();
+std::unique_ptr<Solver<Scalar>> make_event_solver(Foresight foresight) {
+    return std::make_unique<EventSolverOfAll<Scalar>>(foresight);
 }
 
-template std::unique_ptr<Solver<double>> make_event_solver();
-template std::unique_ptr<Solver<float>> make_event_solver();
+template std::unique_ptr<Solver<double>> make_event_solver(Foresight);
+template std::unique_ptr<Solver<float>> make_event_solver(Foresight);
 
 }  // namespace fts::physics

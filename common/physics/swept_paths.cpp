@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/physics/crowd_range.h"
+#include "common/physics/path_limits.h"
 
 namespace fts::physics {
 namespace {
@@ -13,31 +14,20 @@ namespace {
 constexpr std::size_t kSampledBodies = 1024;
 constexpr std::uint32_t kSpansPerFit = 64;
 
-// Who moves or measures more than so many times what most do is a stray.
+// Who moves more than so many times what most do is a stray.
 constexpr double kMost = 0.9;
 constexpr double kWaysOfMost = 2.3;
-constexpr double kRadiiOfMost = 1.5;
 // A span may be so much shorter than what the grid was fitted to before that is wasteful.
 constexpr double kShortestSpan = 0.5;
 constexpr double kLongestSpan = 1.05;
 
 constexpr std::size_t kFoundAtOnce = 256;
 constexpr std::size_t kCellsPerBody = 1;
-constexpr std::size_t kExtraCells = 16;
 // So many cells round them bodies may come to before the next fit.
 constexpr std::uint32_t kBorder = 2;
 // With the margins, however the bodies lie.
 constexpr std::size_t kMostCellsPerBody = 40;
 constexpr std::uint32_t kMostRows = 4;  // of cells, on which an end of a pair may lie
-
-// Bodies that turn may become faster than those that start by so much, near the end of the span.
-constexpr float kWayWhenTurned = 16.0F;
-
-constexpr float kFloatEpsilon = std::numeric_limits<float>::epsilon();
-// By how many units of its round-off a place may be wrong.
-constexpr float kPlaceUnits = 4.0F;
-// What that is at most for the square of a distance, in units of the longest one that matters.
-constexpr float kSlackBlurs = 24.0F;
 
 template <typename Scalar>
 Scalar sampled(std::vector<Scalar>& values, double q) {

@@ -3,6 +3,7 @@
 
 #include "common/physics/world.h"
 #include "tests/physics/allocation_count.h"
+#include "tests/physics/crowds.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -21,6 +22,23 @@ TEST(Allocation, a_warm_world_asks_for_no_memory) {
     for (int tick = 0; tick < 300; ++tick) world.step(1.0 / 60.0);
     EXPECT_EQ(allocations(), before);
     EXPECT_GT(world.audit().ball_collisions, hits + 20);
+}
+
+TEST(Allocation, a_warm_crowd_in_the_event_solver_asks_for_no_memory) {
+    constexpr std::uint64_t kSeed = 52;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    for (const double largest_m : {0.5, 1.5}) {
+        SCOPED_TRACE(largest_m);
+        World<double> world(random_crowd({.max_radius_m = largest_m}, dice),
+                            {.kind = SolverKind::kEvent});
+        for (int tick = 0; tick < 1200; ++tick) world.step(1.0 / 60.0);
+        const std::uint64_t hits = world.audit().ball_collisions;
+        const std::size_t before = allocations();
+        for (int tick = 0; tick < 600; ++tick) world.step(1.0 / 60.0);
+        EXPECT_EQ(allocations(), before);
+        EXPECT_GT(world.audit().ball_collisions, hits + 1000);
+    }
 }
 
 }  // namespace

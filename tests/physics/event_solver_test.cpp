@@ -390,7 +390,7 @@ TEST(EventSolver, a_periodic_scene_does_not_know_where_its_box_begins) {
 }
 
 template <typename Scalar>
-std::uint64_t hash_after_a_busy_life(std::uint64_t seed) {
+std::uint64_t hash_after_a_life_of_events(std::uint64_t seed) {
     Dice dice(seed);
     const Gas gas{.balls = 120, .half_width_m = 12.0, .max_speed_mps = 10.0};
     Scene walled = random_gas(gas, dice), open = walled;
@@ -415,11 +415,11 @@ std::uint64_t hash_after_a_busy_life(std::uint64_t seed) {
 
 // Change these only together with a change of the physics that is meant to change trajectories.
 TEST(EventDeterminism, golden_hash_in_double_precision) {
-    EXPECT_EQ(hash_after_a_busy_life<double>(2013), 0xf92ce7ebff76109ULL);
+    EXPECT_EQ(hash_after_a_life_of_events<double>(2013), 0xf92ce7ebff76109ULL);
 }
 
 TEST(EventDeterminism, golden_hash_in_single_precision) {
-    EXPECT_EQ(hash_after_a_busy_life<float>(2013), 0xff1abd8f4d7995fULL);
+    EXPECT_EQ(hash_after_a_life_of_events<float>(2013), 0xff1abd8f4d7995fULL);
 }
 
 TEST(EventSolver, in_single_precision_the_clock_is_as_good_after_ten_thousand_seconds_as_at_once) {

@@ -80,7 +80,8 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
      "common/physics/crowd_kernels_avx512.cpp common/physics/swept_lanes.cpp "
      "common/physics/swept_lanes_avx2.cpp common/physics/swept_start.h "
      "common/physics/event_cells.cpp common/physics/flight_filter_avx2.cpp "
-     "common/physics/flight_filter_avx512.cpp",
+     "common/physics/flight_filter_avx512.cpp common/physics/path_kernels_avx2.cpp "
+     "common/physics/path_kernels_avx512.cpp",
      false},
     {"POSIX", "sys/ netinet/ arpa/ unistd.h fcntl.h poll.h signal.h spawn.h dirent.h pwd.h",
      "server/main.cpp server/lab server/ops server/economy client/sdl client/bot common/net tests "

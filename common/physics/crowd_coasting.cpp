@@ -1,0 +1,285 @@
+#include "common/physics/crowd_coasting.h"
+
+#include <cmath>
+#include <limits>
+
+#include "common/physics/time_of_impact.h"
+
+namespace fts::physics {
+namespace {
+
+// A fit holds for so many windows, and bodies are numbered anew with it; the epoch moves on after
+// so many, before times are much coarser than those of a window.
+constexpr std::uint32_t kWindowsPerFit = 64;
+constexpr std::uint32_t kWindowsPerEpoch = 16;
+// A fit does not hold any more when there are so many strays more than after it, and a window ends
+// early when there are so many times as many.
+constexpr std::size_t kMoreStrays = 4;
+constexpr std::size_t kBodiesPerStray = 1024;
+constexpr std::size_t kManyTimes = 4;
+// A crowd of which more than one in so many are strays is none.
+constexpr std::size_t kFewestPerStray = 64;
+// So many bodies that come into another window cost as much as an event.
+constexpr std::size_t kBodiesPerTurn = 16;
+// What happens in so many slices of the queue is brought into the cache together.
+constexpr std::uint32_t kSlicesAtOnce = 8;
+constexpr std::size_t kMostSoon = 64;
+// So many do not fit in the caches that are near.
+constexpr std::size_t kFewestToReadAhead = 32768;
+// By how many units of round-off the box of a stray is larger than what it must hold.
+constexpr double kStrayBoxSlack = 16.0;
+
+}  // namespace
+
+template <typename Scalar>
+bool CrowdCoasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+    if (bodies.ids.size() < kFewest || model.periodic) return false;
+    this->take_over(bodies, model);
+    queue_.reserve(bodies.slots());
+    crowd_.reserve(bodies.slots());
+    strays_.reserve(bodies.slots());
+    near_.reserve(bodies.slots());
+    soon_.reserve(kMostSoon);
+    due_.reset();
+    reads_ahead_ = bodies.ids.size() >= kFewestToReadAhead;
+    windows_to_fit_ = windows_to_epoch_ = 0;
+    strays_.clear();
+    fitted_strays_ = 0;
+    begin_window();
+    return strays_.size() * kFewestPerStray <= bodies.ids.size();
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::begin_span(double span_s, std::uint64_t turns) {
+    this->lay_span(span_s);
+    turns_left_ = turns;
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::break_span() {
+    this->break_off_span();
+    if (due_) queue_.push(*due_);
+    due_.reset();
+}
+
+template <typename Scalar>
+Due CrowdCoasting<Scalar>::next() {
+    while (!crowd_.empty()) {
+        if (strays_.size() > fitted_strays_ + kManyTimes * more_strays()) [[unlikely]]
+            begin_window();
+        if (queue_.empty()) {
+            if (!(until_s_ < end_s_)) return {};
+            const std::uint64_t turns = crowd_.size() / kBodiesPerTurn + 1;
+            if (turns_left_ < turns) return {Happening::kUnfinished, now_s_, 0, 0};
+            turns_left_ -= turns;
+            this->advance_to(until_s_);
+            begin_window();
+            continue;
+        }
+        if (reads_ahead_ && queue_.slice() >= read_to_slice_) read_ahead();
+        if (queue_.next().time_s > end_s_) return {};
+        const Expected first = queue_.pop();
+        if (is_stale(first)) continue;
+        if (turns_left_ == 0) {
+            queue_.push(first);
+            return {Happening::kUnfinished, now_s_, 0, 0};
+        }
+        --turns_left_;
+        due_ = first;
+        __builtin_prefetch(&this->prospects_[first.a], 1);
+        if (first.kind == EventKind::kBall) __builtin_prefetch(&this->prospects_[first.b], 1);
+        constexpr Happening kWhat[] = {Happening::kMeeting, Happening::kWall, Happening::kFall};
+        return {kWhat[static_cast<int>(first.kind)], first.time_s, first.a, first.b};
+    }
+    return {};
+}
+
+// All that the events of the next slices will ask for is read at once, each kind for all of them,
+// so that one wait is for many. That is quicker than to have it fetched without waiting.
+template <typename Scalar>
+void CrowdCoasting<Scalar>::read_ahead() {
+    soon_.clear();
+    const std::uint32_t end = queue_.slice() + 1 + kSlicesAtOnce;
+    for (; read_to_slice_ < end; ++read_to_slice_) {
+        queue_.for_each_in(read_to_slice_, [&](const Expected& event) {
+            if (soon_.size() + 2 > kMostSoon) return;
+            soon_.push_back(event.a);
+            if (event.kind == EventKind::kBall) soon_.push_back(event.b);
+        });
+    }
+    for (const std::uint32_t body : soon_) {
+        read_ += flights_[body].events + this->prospects_[body].apart_from + paths_.cell_of(body);
+    }
+    for (const std::uint32_t body : soon_) read_ += paths_.read_cells(body);
+    for (const std::uint32_t body : soon_) read_ += paths_.read_paths(body);
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::number_living() {
+    crowd_.clear();
+    for (std::uint32_t body = 0; body < this->places(); ++body) {
+        if (this->living_at(body) != kNobody) crowd_.push_back(body);
+    }
+}
+
+template <typename Scalar>
+std::size_t CrowdCoasting<Scalar>::more_strays() const {
+    return crowd_.size() / kBodiesPerStray + kMoreStrays;
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::fit() {
+    windows_to_fit_ = kWindowsPerFit;
+    number_living();
+    paths_.fit(flights_, crowd_, now_s_, model_.walls, model_.equal_radii);
+    paths_.begin(flights_, crowd_, now_s_);
+    for (const std::uint32_t body : crowd_) this->prospects_[body].cell[1] = paths_.cell_of(body);
+    this->renumber();
+    number_living();
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::begin_window() {
+    if (windows_to_epoch_-- == 0) {
+        windows_to_epoch_ = kWindowsPerEpoch;
+        this->move_epoch(this->coarse_now_s());
+    }
+    const bool fits = windows_to_fit_ == 0 || strays_.size() > fitted_strays_ + more_strays();
+    --windows_to_fit_;
+    if (fits) fit();
+    until_s_ = now_s_ + paths_.window_s();
+    queue_.begin(now_s_, until_s_);
+    read_to_slice_ = 0;
+    paths_.begin(flights_, crowd_, now_s_);
+    strays_.assign(paths_.strays().begin(), paths_.strays().end());
+    if (fits) fitted_strays_ = strays_.size();
+    paths_.for_each_pair([&](std::uint32_t a, std::uint32_t b) { expect_meeting(a, b); });
+    for (const std::uint32_t stray : strays_) expect_meetings(stray);
+    if (model_.walls) {
+        for (const std::uint32_t body : paths_.at_border()) expect_walls(body);
+        for (const std::uint32_t body : strays_) expect_walls(body);
+    }
+    if (model_.platform) {
+        for (const std::uint32_t body : crowd_) expect_fall(body);
+    }
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::remove(std::uint32_t body) {
+    paths_.remove(body);
+    std::erase(strays_, body);
+    std::erase(crowd_, body);
+    this->bury(body);
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::follow(std::uint32_t body) {
+    const bool was_stray = paths_.is_stray(body);
+    if (!paths_.follow(body, flights_[body], now_s_) && !was_stray) strays_.push_back(body);
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::predict_as_seen(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t both[] = {a, b};
+    for (const int i : {0, 1}) {
+        if (sights_[i].is_one) {
+            paths_.follow(sights_[i]);
+        } else {
+            follow(both[i]);
+        }
+    }
+    for (const int i : {0, 1}) expect_as_seen(both[i], sights_[i]);
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_as_seen(std::uint32_t body,
+                                           const typename FlightPaths<Scalar>::Sight& sight) {
+    if (!sight.is_one) {
+        expect_meetings(body);
+    } else {
+        const auto meet = [&](std::uint32_t other) {
+            if (other != body) expect_meeting(body, other);
+        };
+        std::for_each(strays_.begin(), strays_.end(), meet);
+        paths_.for_each_meeting(sight, meet);
+    }
+    expect_others(body);
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_meetings(std::uint32_t body) {
+    const auto meet = [&](std::uint32_t other) {
+        if (other != body) expect_meeting(body, other);
+    };
+    std::for_each(strays_.begin(), strays_.end(), meet);
+    if (paths_.is_stray(body)) {
+        paths_.for_each_within(swept_box(flights_[body]), meet);
+    } else {
+        paths_.for_each_meeting(body, now_s_, meet);
+    }
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_meeting(std::uint32_t body, std::uint32_t other) {
+    constexpr Scalar kSlack = Scalar(1) + Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+    constexpr Scalar kLeast = std::numeric_limits<Scalar>::min();
+    const Flight &one = flights_[body], &two = flights_[other];
+    const Approach<Scalar> approach(one, two);
+    const Scalar reach = one.radius_m + two.radius_m, aside = approach.aside();
+    if (!(approach.rate() < Scalar(0)) ||
+        aside * aside > kSlack * (reach * reach) * approach.speed_squared() + kLeast) {
+        return;
+    }
+    const Scalar wait_s = time_until_contact<Scalar>({approach.x_m, approach.y_m},
+                                                     {approach.x_mps, approach.y_mps}, reach);
+    const double time_s = std::max(now_s_, approach.from_s + static_cast<double>(wait_s));
+    if (!(time_s <= until_s_)) return;
+    if (this->is_immovable(body) && this->is_immovable(other)) return;
+    if (this->may_be_kept_apart(approach, reach, body, other) &&
+        this->are_kept_apart(body, other, {})) {
+        return;
+    }
+    queue_.push({time_s, EventKind::kBall, body, other, one.events, two.events});
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_walls(std::uint32_t body) {
+    const Flight& flight = flights_[body];
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+        const Scalar speed = flight.velocity_mps[axis];
+        const std::uint32_t up = speed > Scalar(0) ? 1 : 0, side = 2 * axis + up;
+        if (speed == Scalar(0) || !this->has_wall(body, side)) continue;
+        const Scalar edge_m = up == 1 ? model_.walls->max_m[axis] - flight.radius_m
+                                      : model_.walls->min_m[axis] + flight.radius_m;
+        const Scalar way_m = std::copysign(Scalar(1), speed) * (edge_m - flight.position_m[axis]);
+        const Scalar wait_s = std::max(Scalar(0), way_m) / std::abs(speed);
+        expect({this->time_after(flight, wait_s), EventKind::kWall, body, side, flight.events, 0});
+    }
+}
+
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_fall(std::uint32_t body) {
+    const Flight& flight = flights_[body];
+    const auto left_s = static_cast<Scalar>(until_s_ - flight.since_s);
+    const Vec way_m = flight.velocity_mps.cwiseAbs() * left_s;
+    if (surely_stays<Scalar>(*model_.platform, flight.position_m, way_m)) return;
+    const Scalar wait_s =
+        time_until_edge<Scalar>(*model_.platform, flight.position_m, flight.velocity_mps);
+    expect({this->time_after(flight, wait_s), EventKind::kFall, body, 0, flight.events, 0});
+}
+
+// Where its disc may be from now to the end of the window.
+template <typename Scalar>
+auto CrowdCoasting<Scalar>::swept_box(const Flight& flight) const -> Box {
+    const Vec from = flight.position_at(now_s_), to = flight.position_at(until_s_);
+    const Scalar extent = from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff() + flight.radius_m;
+    const Vec reach =
+        Vec::Constant(flight.radius_m + static_cast<Scalar>(kStrayBoxSlack) *
+                                            std::numeric_limits<Scalar>::epsilon() * extent);
+    return {from.cwiseMin(to) - reach, from.cwiseMax(to) + reach};
+}
+
+template class CrowdCoasting<double>;
+template class CrowdCoasting<float>;
+
+}  // namespace fts::physics
