@@ -21,6 +21,8 @@ constexpr std::size_t kManyTimes = 4;
 constexpr std::size_t kFewestPerStray = 64;
 // So many bodies that come into another window cost as much as an event.
 constexpr std::size_t kBodiesPerTurn = 16;
+// So many pairs a body usually need no more memory.
+constexpr std::size_t kUsualPairs = 4;
 // What happens in so many slices of the queue is brought into the cache together.
 constexpr std::uint32_t kSlicesAtOnce = 8;
 constexpr std::size_t kMostSoon = 64;
@@ -35,6 +37,8 @@ template <typename Scalar>
 bool CrowdCoasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
     if (bodies.ids.size() < kFewest || model.periodic) return false;
     this->take_over(bodies, model);
+    kernels_ = &flight_kernels<Scalar>(best_simd_level(), model.equal_radii);
+    for (auto& side : pairs_) side.reserve(kUsualPairs * bodies.slots() + kMeetingsAtOnce);
     queue_.reserve(bodies.slots());
     crowd_.reserve(bodies.slots());
     strays_.reserve(bodies.slots());
@@ -153,7 +157,7 @@ void CrowdCoasting<Scalar>::begin_window() {
     paths_.begin(flights_, crowd_, now_s_);
     strays_.assign(paths_.strays().begin(), paths_.strays().end());
     if (fits) fitted_strays_ = strays_.size();
-    paths_.for_each_pair([&](std::uint32_t a, std::uint32_t b) { expect_meeting(a, b); });
+    expect_all_pairs();
     for (const std::uint32_t stray : strays_) expect_meetings(stray);
     if (model_.walls) {
         for (const std::uint32_t body : paths_.at_border()) expect_walls(body);
@@ -240,6 +244,35 @@ void CrowdCoasting<Scalar>::expect_meeting(std::uint32_t body, std::uint32_t oth
         return;
     }
     queue_.push({time_s, EventKind::kBall, body, other, one.events, two.events});
+}
+
+// What expect_meeting does for each pair that may meet, for several at a time.
+template <typename Scalar>
+void CrowdCoasting<Scalar>::expect_all_pairs() {
+    auto &one = pairs_[0], &other = pairs_[1];
+    one.clear();
+    other.clear();
+    paths_.for_each_pair([&](std::uint32_t a, std::uint32_t b) {
+        one.push_back(a);
+        other.push_back(b);
+    });
+    const std::size_t count = one.size();
+    one.resize(count + kMeetingsAtOnce, crowd_.front());
+    other.resize(count + kMeetingsAtOnce, crowd_.front());
+    alignas(64) double time_s[kMeetingsAtOnce];
+    for (std::size_t first = 0; first < count; first += kMeetingsAtOnce) {
+        const std::uint32_t may_be_apart = kernels_->meet(flights_.data(), one.data() + first,
+                                                          other.data() + first, now_s_, time_s);
+        const std::size_t end = std::min<std::size_t>(kMeetingsAtOnce, count - first);
+        for (std::size_t k = 0; k < end; ++k) {
+            if (!(time_s[k] <= until_s_)) continue;
+            const std::uint32_t a = one[first + k], b = other[first + k];
+            if (this->is_immovable(a) && this->is_immovable(b)) continue;
+            if ((may_be_apart >> k & 1U) != 0 && this->are_kept_apart(a, b, {})) continue;
+            queue_.push(
+                {time_s[k], EventKind::kBall, a, b, flights_[a].events, flights_[b].events});
+        }
+    }
 }
 
 template <typename Scalar>

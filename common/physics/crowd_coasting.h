@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/physics/event_queue.h"
+#include "common/physics/flight_filter.h"
 #include "common/physics/flight_paths.h"
 #include "common/physics/flights.h"
 
@@ -98,6 +99,7 @@ class CrowdCoasting : public Flights<Scalar> {
     void expect_as_seen(std::uint32_t body, const typename FlightPaths<Scalar>::Sight& sight);
     void expect_meetings(std::uint32_t body);
     void expect_meeting(std::uint32_t body, std::uint32_t other);
+    void expect_all_pairs();
     void expect_walls(std::uint32_t body);
     void expect_fall(std::uint32_t body);
     void expect(const Expected& event) {
@@ -118,6 +120,8 @@ class CrowdCoasting : public Flights<Scalar> {
     std::optional<Expected> due_;
     std::uint32_t windows_to_fit_ = 0, windows_to_epoch_ = 0;
     std::vector<std::uint32_t> near_;  // indices
+    const FlightKernels<Scalar>* kernels_ = nullptr;
+    RoomyVector<std::uint32_t> pairs_[2];  // by expect_all_pairs, one and other
     bool reads_ahead_ = false;
     std::uint32_t read_to_slice_ = 0;
     std::vector<std::uint32_t> soon_;  // by read_ahead

@@ -72,7 +72,28 @@ struct OneByOne {
         return bits & ahead.any;
     }
 
-    static constexpr FlightKernels<Scalar> kTable{gather, close, look_ahead, until};
+    static std::uint32_t meet(const Flight<Scalar>* flights, const std::uint32_t* one,
+                              const std::uint32_t* other, double now_s, double* time_s) {
+        constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
+        constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
+        std::uint32_t may_be_apart = 0;
+        for (std::uint32_t k = 0; k < kMeetingsAtOnce; ++k) {
+            const Flight<Scalar>&a = flights[one[k]], &b = flights[other[k]];
+            const Approach<Scalar> way(a, b);
+            const Scalar reach = a.radius_m + b.radius_m;
+            const Scalar wait_s =
+                time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps}, reach);
+            time_s[k] = std::max(now_s, way.from_s + static_cast<double>(wait_s));
+            const Scalar apart = way.distance_squared(), rate = way.rate();
+            const Scalar squares = a.velocity_mps.squaredNorm() + b.velocity_mps.squaredNorm();
+            const bool is_near = apart < kNear * reach * reach;
+            const bool barely = rate * rate < kBarely * apart * squares;
+            may_be_apart |= static_cast<std::uint32_t>(is_near || barely) << k;
+        }
+        return may_be_apart;
+    }
+
+    static constexpr FlightKernels<Scalar> kTable{gather, close, look_ahead, until, meet};
 };
 
 }  // namespace

@@ -35,6 +35,13 @@ inline constexpr double kGapSlack = 16.0 * std::numeric_limits<double>::epsilon(
 inline constexpr double kChordSlack = 32.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double kQuotientSlack = 1e-12;
 
+// Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
+// reach and speed: far above round-off.
+inline constexpr double kApartSlack = 1e-2;
+
+// So many pairs are looked at at once.
+inline constexpr std::uint32_t kMeetingsAtOnce = 32;
+
 template <typename Scalar>
 struct FlightKernels {
     // Of the bodies listed, Neighbours::kMost at most, `self` and `partner` are left out; `since_s`
@@ -52,6 +59,11 @@ struct FlightKernels {
                        Ahead<Scalar>& ahead);
     // Who of them may do so up to a time.
     std::uint32_t (*until)(const Ahead<Scalar>& ahead, std::uint32_t count, double time_s);
+    // When each of `one` meets that of `other`, kMeetingsAtOnce of them: exactly what
+    // time_until_contact says since the later of two flights began, but not before `now_s`.
+    // Returns a bit for each pair that may have been kept apart.
+    std::uint32_t (*meet)(const Flight<Scalar>* flights, const std::uint32_t* one,
+                          const std::uint32_t* other, double now_s, double* time_s);
 };
 
 // The level is a supported one. All levels give the same bits.

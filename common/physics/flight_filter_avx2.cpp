@@ -19,7 +19,9 @@ struct Avx2Pack {
     static Vector mul(Vector a, Vector b) { return _mm256_mul_pd(a, b); }
     static Vector min(Vector a, Vector b) { return _mm256_min_pd(a, b); }
     static Vector max(Vector a, Vector b) { return _mm256_max_pd(a, b); }
-    static Vector root_above(Vector a) { return _mm256_sqrt_pd(a); }
+    static Vector root(Vector a) { return _mm256_sqrt_pd(a); }
+    static Vector quotient(Vector a, Vector b) { return _mm256_div_pd(a, b); }
+    static Vector root_above(Vector a) { return root(a); }
     static Vector quotient_below(Vector a, Vector b) {
         return mul(_mm256_div_pd(a, b), all(1.0 - kQuotientSlack));
     }
@@ -32,6 +34,8 @@ struct Avx2Pack {
     static Mask not_above(Mask among, Vector a, Vector b) {
         return _mm256_andnot_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ), among);
     }
+    static Mask either(Mask one, Mask other) { return _mm256_or_pd(one, other); }
+    static Mask both(Mask one, Mask other) { return _mm256_and_pd(one, other); }
     static Mask of_bits(Mask among, std::uint32_t bits) {
         const __m256i place = _mm256_setr_epi64x(1, 2, 4, 8);
         const __m256i all_bits = _mm256_set1_epi64x(static_cast<long long>(bits));

@@ -23,6 +23,8 @@ struct Avx512Pack {
     static Vector mul(Vector a, Vector b) { return _mm512_mul_pd(a, b); }
     static Vector min(Vector a, Vector b) { return _mm512_min_pd(a, b); }
     static Vector max(Vector a, Vector b) { return _mm512_max_pd(a, b); }
+    static Vector root(Vector a) { return _mm512_sqrt_pd(a); }
+    static Vector quotient(Vector a, Vector b) { return _mm512_div_pd(a, b); }
     static Vector at_least_normal(Vector a) {
         return max(a, all(std::numeric_limits<double>::min()));
     }
@@ -39,6 +41,8 @@ struct Avx512Pack {
     static Mask not_above(Mask among, Vector a, Vector b) {
         return _mm512_mask_cmp_pd_mask(among, a, b, _CMP_NGT_UQ);
     }
+    static Mask either(Mask one, Mask other) { return static_cast<Mask>(one | other); }
+    static Mask both(Mask one, Mask other) { return static_cast<Mask>(one & other); }
     static Mask of_bits(Mask among, std::uint32_t bits) { return static_cast<Mask>(among & bits); }
     static Vector chosen(Mask mask, Vector yes, Vector no) {
         return _mm512_mask_blend_pd(mask, no, yes);

@@ -10,6 +10,8 @@
 //     least_of(a)                       of its numbers
 //     below(a, b), at_most(a, b)        a mask: a < b, a <= b
 //     not_above(among, a, b)            of a mask those that do not have a > b
+//     root(a), quotient(a, b)           exact ones; a >= 0, or a mask leaves it out
+//     either(one, other), both(one, other)  a mask
 //     of_bits(among, bits)              of a mask those whose bit is set
 //     chosen(mask, yes, no), bits_of(mask)
 //     not_a_number_at(mask, a)
@@ -194,7 +196,52 @@ struct WideFlights {
         return bits & ahead.any;
     }
 
-    static constexpr FlightKernels<double> kTable{gather, close, look_ahead, until};
+    static std::uint32_t meet(const Flight<double>* flights, const std::uint32_t* one,
+                              const std::uint32_t* other, double now_s, double* time_s) {
+        const Vector now = Pack::all(now_s), never = Pack::all(kNever<double>);
+        const Vector zero = Pack::all(0.0);
+        std::uint32_t may_be_apart = 0;
+        for (std::uint32_t k = 0; k < kMeetingsAtOnce; k += Pack::kWidth) {
+            const Lines<Pack> a = Pack::side_by_side(flights, one + k);
+            const Lines<Pack> b = Pack::side_by_side(flights, other + k);
+            const Vector from = Pack::max(a.since, b.since);
+            const Vector for_a = Pack::sub(from, a.since), for_b = Pack::sub(from, b.since);
+            const Vector x =
+                Pack::sub(flown<Pack>(a.x, a.vx, for_a), flown<Pack>(b.x, b.vx, for_b));
+            const Vector y =
+                Pack::sub(flown<Pack>(a.y, a.vy, for_a), flown<Pack>(b.y, b.vy, for_b));
+            const Vector wx = Pack::sub(a.vx, b.vx), wy = Pack::sub(a.vy, b.vy);
+            const Vector reach = Pack::add(a.radius, b.radius);
+            const Vector rate = sum_of_products<Pack>(x, wx, y, wy);
+            const Vector apart = sum_of_products<Pack>(x, x, y, y);
+            const Vector distance = Pack::root(apart);
+            const Vector speed = Pack::root(sum_of_products<Pack>(wx, wx, wy, wy));
+            const Vector aside = Pack::sub(Pack::mul(x, wy), Pack::mul(y, wx));
+            const Vector passing = Pack::quotient(Pack::max(aside, Pack::sub(zero, aside)), speed);
+            const Vector half = Pack::mul(Pack::sub(reach, passing), Pack::add(reach, passing));
+            const Vector chord = Pack::root(Pack::max(half, zero));
+            const Vector gap = Pack::mul(Pack::sub(distance, reach), Pack::add(distance, reach));
+            const Vector way = Pack::sub(chord, Pack::quotient(rate, speed));
+            const Vector wait = Pack::quotient(gap, Pack::mul(way, speed));
+            const auto approach = Pack::below(rate, zero);
+            const auto touch = Pack::at_most(distance, reach);
+            const auto meets =
+                Pack::both(approach, Pack::either(touch, Pack::at_most(passing, reach)));
+            const Vector time = Pack::max(Pack::add(from, Pack::chosen(touch, zero, wait)), now);
+            Pack::store(time_s + k, Pack::chosen(meets, time, never));
+            const Vector squares = Pack::add(sum_of_products<Pack>(a.vx, a.vx, a.vy, a.vy),
+                                             sum_of_products<Pack>(b.vx, b.vx, b.vy, b.vy));
+            const auto is_near = Pack::below(
+                apart, Pack::mul(Pack::mul(Pack::all(1.0 + kApartSlack), reach), reach));
+            const auto barely = Pack::below(
+                Pack::mul(rate, rate),
+                Pack::mul(Pack::mul(Pack::all(kApartSlack * kApartSlack), apart), squares));
+            may_be_apart |= Pack::bits_of(Pack::either(is_near, barely)) << k;
+        }
+        return may_be_apart;
+    }
+
+    static constexpr FlightKernels<double> kTable{gather, close, look_ahead, until, meet};
 };
 
 }  // namespace fts::physics

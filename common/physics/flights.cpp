@@ -5,16 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "common/physics/flight_filter.h"
 #include "common/physics/periodic.h"
 
 namespace fts::physics {
-namespace {
-
-// Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
-// reach and speed: far above round-off.
-constexpr double kApartSlack = 1e-2;
-
-}  // namespace
 
 template <typename Scalar>
 void Flights<Scalar>::take_over(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {

@@ -141,5 +141,51 @@ TYPED_TEST(FlightFilter, sees_the_same_on_every_level_and_leaves_nobody_out_who_
     }
 }
 
+TYPED_TEST(FlightFilter, pairs_meet_at_the_same_time_to_the_last_bit_on_every_level) {
+    using Scalar = TypeParam;
+    constexpr std::uint64_t kSeed = 74;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    std::size_t met = 0, missed = 0, at_once = 0, apart = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        auto flights = random_flights<Scalar>(24, trial % 2 == 0, dice);
+        // At rest to each other, in one place, just touching.
+        flights[1].velocity_mps = flights[0].velocity_mps;
+        flights[3].position_m = flights[2].position_m;
+        flights[3].since_s = flights[2].since_s;
+        flights[5].since_s = flights[4].since_s;
+        flights[5].position_m = flights[4].position_m +
+                                Vec2<Scalar>(flights[4].radius_m + flights[5].radius_m, Scalar(0));
+        std::uint32_t one[kMeetingsAtOnce], other[kMeetingsAtOnce];
+        for (std::uint32_t k = 0; k < kMeetingsAtOnce; ++k) {
+            one[k] = k < 3 ? 2 * k : static_cast<std::uint32_t>(dice.below(flights.size()));
+            other[k] = k < 3 ? 2 * k + 1 : static_cast<std::uint32_t>(dice.below(flights.size()));
+        }
+        const double now_s = dice.between(0.2, 0.4);
+        alignas(64) double expected_s[kMeetingsAtOnce], seen_s[kMeetingsAtOnce];
+        const std::uint32_t near = flight_kernels<Scalar>(SimdLevel::kPlain, true)
+                                       .meet(flights.data(), one, other, now_s, expected_s);
+        for (const SimdLevel level : {SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+            if (!is_supported(level)) continue;
+            const auto& kernels = flight_kernels<Scalar>(level, trial % 2 == 0);
+            ASSERT_EQ(kernels.meet(flights.data(), one, other, now_s, seen_s), near);
+            for (std::uint32_t k = 0; k < kMeetingsAtOnce; ++k) {
+                expect_same_bits(expected_s, seen_s, k);
+            }
+        }
+        for (std::uint32_t k = 0; k < kMeetingsAtOnce; ++k) {
+            const Approach<Scalar> way(flights[one[k]], flights[other[k]]);
+            const Scalar wait_s =
+                time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps},
+                                           flights[one[k]].radius_m + flights[other[k]].radius_m);
+            const double time_s = std::max(now_s, way.from_s + static_cast<double>(wait_s));
+            ASSERT_EQ(expected_s[k], time_s) << k;
+            (time_s == kNever<double> ? missed : time_s == now_s ? at_once : met) += 1;
+            apart += near >> k & 1U;
+        }
+    }
+    for (const std::size_t some : {met, missed, at_once, apart}) EXPECT_GT(some, 1000U);
+}
+
 }  // namespace
 }  // namespace fts::physics
