@@ -37,6 +37,7 @@ template <typename Scalar>
 bool CrowdCoasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
     if (bodies.ids.size() < kFewest || model.periodic) return false;
     this->take_over(bodies, model);
+    number_living();
     kernels_ = &flight_kernels<Scalar>(best_simd_level(), model.equal_radii);
     for (auto& side : pairs_) side.reserve(kUsualPairs * bodies.slots() + kMeetingsAtOnce);
     queue_.reserve(bodies.slots());
@@ -134,7 +135,6 @@ std::size_t CrowdCoasting<Scalar>::more_strays() const {
 template <typename Scalar>
 void CrowdCoasting<Scalar>::fit() {
     windows_to_fit_ = kWindowsPerFit;
-    number_living();
     paths_.fit(flights_, crowd_, now_s_, model_.walls, model_.equal_radii);
     paths_.begin(flights_, crowd_, now_s_);
     for (const std::uint32_t body : crowd_) this->prospects_[body].cell[1] = paths_.cell_of(body);
@@ -198,52 +198,36 @@ void CrowdCoasting<Scalar>::predict_as_seen(std::uint32_t a, std::uint32_t b) {
 template <typename Scalar>
 void CrowdCoasting<Scalar>::expect_as_seen(std::uint32_t body,
                                            const typename FlightPaths<Scalar>::Sight& sight) {
-    if (!sight.is_one) {
-        expect_meetings(body);
+    if (sight.is_one) {
+        expect_meetings(body, [&](auto&& meet) { paths_.for_each_meeting(sight, meet); });
     } else {
-        const auto meet = [&](std::uint32_t other) {
-            if (other != body) expect_meeting(body, other);
-        };
-        std::for_each(strays_.begin(), strays_.end(), meet);
-        paths_.for_each_meeting(sight, meet);
+        expect_meetings(body);
     }
     expect_others(body);
 }
 
 template <typename Scalar>
 void CrowdCoasting<Scalar>::expect_meetings(std::uint32_t body) {
-    const auto meet = [&](std::uint32_t other) {
-        if (other != body) expect_meeting(body, other);
-    };
-    std::for_each(strays_.begin(), strays_.end(), meet);
-    if (paths_.is_stray(body)) {
-        paths_.for_each_within(swept_box(flights_[body]), meet);
-    } else {
-        paths_.for_each_meeting(body, now_s_, meet);
-    }
+    expect_meetings(body, [&](auto&& meet) {
+        if (paths_.is_stray(body)) {
+            paths_.for_each_within(swept_box(flights_[body]), meet);
+        } else {
+            paths_.for_each_meeting(body, now_s_, meet);
+        }
+    });
 }
 
 template <typename Scalar>
 void CrowdCoasting<Scalar>::expect_meeting(std::uint32_t body, std::uint32_t other) {
-    constexpr Scalar kSlack = Scalar(1) + Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-    constexpr Scalar kLeast = std::numeric_limits<Scalar>::min();
     const Flight &one = flights_[body], &two = flights_[other];
     const Approach<Scalar> approach(one, two);
-    const Scalar reach = one.radius_m + two.radius_m, aside = approach.aside();
-    if (!(approach.rate() < Scalar(0)) ||
-        aside * aside > kSlack * (reach * reach) * approach.speed_squared() + kLeast) {
-        return;
-    }
+    const Scalar reach = one.radius_m + two.radius_m;
+    if (!(approach.rate() < Scalar(0)) || approach.surely_misses(reach)) return;
     const Scalar wait_s = time_until_contact<Scalar>({approach.x_m, approach.y_m},
                                                      {approach.x_mps, approach.y_mps}, reach);
     const double time_s = std::max(now_s_, approach.from_s + static_cast<double>(wait_s));
     if (!(time_s <= until_s_)) return;
-    if (this->is_immovable(body) && this->is_immovable(other)) return;
-    if (this->may_be_kept_apart(approach, reach, body, other) &&
-        this->are_kept_apart(body, other, {})) {
-        return;
-    }
-    queue_.push({time_s, EventKind::kBall, body, other, one.events, two.events});
+    expect_meeting_at(time_s, body, other, this->may_be_kept_apart(approach, reach, body, other));
 }
 
 // What expect_meeting does for each pair that may meet, for several at a time.
@@ -266,11 +250,8 @@ void CrowdCoasting<Scalar>::expect_all_pairs() {
         const std::size_t end = std::min<std::size_t>(kMeetingsAtOnce, count - first);
         for (std::size_t k = 0; k < end; ++k) {
             if (!(time_s[k] <= until_s_)) continue;
-            const std::uint32_t a = one[first + k], b = other[first + k];
-            if (this->is_immovable(a) && this->is_immovable(b)) continue;
-            if ((may_be_apart >> k & 1U) != 0 && this->are_kept_apart(a, b, {})) continue;
-            queue_.push(
-                {time_s[k], EventKind::kBall, a, b, flights_[a].events, flights_[b].events});
+            expect_meeting_at(time_s[k], one[first + k], other[first + k],
+                              (may_be_apart >> k & 1U) != 0);
         }
     }
 }
@@ -285,7 +266,7 @@ void CrowdCoasting<Scalar>::expect_walls(std::uint32_t body) {
         const Scalar edge_m = up == 1 ? model_.walls->max_m[axis] - flight.radius_m
                                       : model_.walls->min_m[axis] + flight.radius_m;
         const Scalar way_m = std::copysign(Scalar(1), speed) * (edge_m - flight.position_m[axis]);
-        const Scalar wait_s = std::max(Scalar(0), way_m) / std::abs(speed);
+        const Scalar wait_s = time_until_wall(way_m, std::abs(speed));
         expect({this->time_after(flight, wait_s), EventKind::kWall, body, side, flight.events, 0});
     }
 }

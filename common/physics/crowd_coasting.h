@@ -79,7 +79,7 @@ class CrowdCoasting : public Flights<Scalar> {
   private:
     using Expected = Event<double>;
     using Base = Flights<Scalar>;
-    using Base::flights_, Base::model_, Base::now_s_, Base::end_s_, Base::living_;
+    using Base::flights_, Base::model_, Base::now_s_, Base::end_s_;
     using Box = typename Model<Scalar>::Box;
 
     std::size_t more_strays() const;
@@ -98,7 +98,22 @@ class CrowdCoasting : public Flights<Scalar> {
     }
     void expect_as_seen(std::uint32_t body, const typename FlightPaths<Scalar>::Sight& sight);
     void expect_meetings(std::uint32_t body);
+    // With strays and with those for whom `search` calls what it is given.
+    template <typename Search>
+    void expect_meetings(std::uint32_t body, Search&& search) {
+        const auto meet = [&](std::uint32_t other) {
+            if (other != body) expect_meeting(body, other);
+        };
+        std::for_each(strays_.begin(), strays_.end(), meet);
+        search(meet);
+    }
     void expect_meeting(std::uint32_t body, std::uint32_t other);
+    // Within the window.
+    void expect_meeting_at(double time_s, std::uint32_t a, std::uint32_t b, bool may_be_apart) {
+        if (this->is_immovable(a) && this->is_immovable(b)) return;
+        if (may_be_apart && this->are_kept_apart(a, b, {})) return;
+        queue_.push({time_s, EventKind::kBall, a, b, flights_[a].events, flights_[b].events});
+    }
     void expect_all_pairs();
     void expect_walls(std::uint32_t body);
     void expect_fall(std::uint32_t body);

@@ -3,10 +3,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "common/physics/scene.h"
 
 namespace fts::physics {
+
+// By how many units of round-off a pair may seem to miss and still be computed exactly.
+template <typename Scalar>
+inline constexpr Scalar kFilterSlack = Scalar(1) +
+                                       Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+
+// Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
+// reach and speed: far above round-off.
+inline constexpr double kApartSlack = 1e-2;
 
 // What must be read of a body to predict others: one cache line.
 template <typename Scalar>
@@ -67,6 +77,20 @@ struct Approach {
         const Vec2<Scalar> here = one.position_at(from_s), there = other.position_at(from_s);
         x_m = here.x() - there.x();
         y_m = here.y() - there.y();
+    }
+    // Not to be mistaken for round-off. The filters of flight_filter.h do the same for several.
+    bool surely_misses(Scalar reach_m) const {
+        const Scalar limit = kFilterSlack<Scalar> * (reach_m * reach_m) * speed_squared() +
+                             std::numeric_limits<Scalar>::min();
+        return aside() * aside() > limit;
+    }
+    // Those kept apart touch when they are left together, and approach by round-off only. `squares`
+    // is of both speeds.
+    bool may_be_kept_apart(Scalar reach_m, Scalar squares) const {
+        constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
+        constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
+        return distance_squared() < kNear * reach_m * reach_m ||
+               rate() * rate() < kBarely * distance_squared() * squares;
     }
     Scalar rate() const { return x_m * x_mps + y_m * y_mps; }
     Scalar aside() const { return x_m * y_mps - y_m * x_mps; }

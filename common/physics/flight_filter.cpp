@@ -53,10 +53,7 @@ struct OneByOne {
         ahead.any = 0;
         for (std::uint32_t k = 0; k < about.count; ++k) {
             const Approach<Scalar> way(self, about, k, shift_m);
-            const Scalar reach = reach_m(about, k, self.radius_m), aside = way.aside();
-            const Scalar limit = (kFilterSlack<Scalar> * (reach * reach)) * way.speed_squared() +
-                                 std::numeric_limits<Scalar>::min();
-            const bool misses = aside * aside > limit;
+            const bool misses = way.surely_misses(reach_m(about, k, self.radius_m));
             ahead.any |= static_cast<std::uint32_t>(way.rate() < Scalar(0) && !misses) << k;
             ahead.earliest_s[k] = now_s;
         }
@@ -74,8 +71,6 @@ struct OneByOne {
 
     static std::uint32_t meet(const Flight<Scalar>* flights, const std::uint32_t* one,
                               const std::uint32_t* other, double now_s, double* time_s) {
-        constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
-        constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
         std::uint32_t may_be_apart = 0;
         for (std::uint32_t k = 0; k < kMeetingsAtOnce; ++k) {
             const Flight<Scalar>&a = flights[one[k]], &b = flights[other[k]];
@@ -84,11 +79,8 @@ struct OneByOne {
             const Scalar wait_s =
                 time_until_contact<Scalar>({way.x_m, way.y_m}, {way.x_mps, way.y_mps}, reach);
             time_s[k] = std::max(now_s, way.from_s + static_cast<double>(wait_s));
-            const Scalar apart = way.distance_squared(), rate = way.rate();
             const Scalar squares = a.velocity_mps.squaredNorm() + b.velocity_mps.squaredNorm();
-            const bool is_near = apart < kNear * reach * reach;
-            const bool barely = rate * rate < kBarely * apart * squares;
-            may_be_apart |= static_cast<std::uint32_t>(is_near || barely) << k;
+            may_be_apart |= static_cast<std::uint32_t>(way.may_be_kept_apart(reach, squares)) << k;
         }
         return may_be_apart;
     }

@@ -22,11 +22,6 @@ struct Ahead {
     alignas(64) double earliest_s[Neighbours<Scalar>::kMost] = {};
 };
 
-// By how many units of round-off a pair may seem to miss and still be computed exactly.
-template <typename Scalar>
-inline constexpr Scalar kFilterSlack = Scalar(1) +
-                                       Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-
 // A time before which two do not meet is found with one root. With d the distance, R the reach, v
 // the speed, b = d.v < 0 and c = d x v, it takes (d^2 - R^2) / (s - b) where s^2 = R^2 v^2 - c^2.
 // What time_until_contact computes differs from it by round-off, which is below these parts: of
@@ -34,10 +29,6 @@ inline constexpr Scalar kFilterSlack = Scalar(1) +
 inline constexpr double kGapSlack = 16.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double kChordSlack = 32.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double kQuotientSlack = 1e-12;
-
-// Of bodies kept apart, how far the gap may be open and the approach differ from none, as parts of
-// reach and speed: far above round-off.
-inline constexpr double kApartSlack = 1e-2;
 
 // So many pairs are looked at at once.
 inline constexpr std::uint32_t kMeetingsAtOnce = 32;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "common/physics/flight_filter.h"
 #include "common/physics/periodic.h"
 
 namespace fts::physics {
@@ -140,18 +139,6 @@ bool Flights<Scalar>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image ima
         return false;
     };
     return a_has_b(a, b, image.x, image.y) || a_has_b(b, a, -image.x, -image.y);
-}
-
-template <typename Scalar>
-bool Flights<Scalar>::may_be_kept_apart(const Approach<Scalar>& approach, Scalar reach_m,
-                                        std::uint32_t a, std::uint32_t b) const {
-    constexpr Scalar kNear = static_cast<Scalar>(1.0 + kApartSlack);
-    constexpr Scalar kBarely = static_cast<Scalar>(kApartSlack * kApartSlack);
-    const Scalar apart_squared = approach.distance_squared(), rate = approach.rate();
-    return apart_squared < kNear * reach_m * reach_m ||
-           rate * rate < kBarely * apart_squared *
-                             (flights_[a].velocity_mps.squaredNorm() +
-                              flights_[b].velocity_mps.squaredNorm());
 }
 
 template <typename Scalar>

@@ -146,9 +146,11 @@ class Flights {
     // In the order of their cells.
     void renumber();
     bool are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const;
-    // Those kept apart touch when they are left together, and approach by round-off only.
     bool may_be_kept_apart(const Approach<Scalar>& approach, Scalar reach_m, std::uint32_t a,
-                           std::uint32_t b) const;
+                           std::uint32_t b) const {
+        return approach.may_be_kept_apart(reach_m, flights_[a].velocity_mps.squaredNorm() +
+                                                       flights_[b].velocity_mps.squaredNorm());
+    }
     bool has_wall(std::uint32_t body, std::uint32_t side) const {
         return !is_immovable(body) && (prospects_[body].sides_kept_off >> side & 1U) == 0;
     }

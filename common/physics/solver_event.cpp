@@ -52,6 +52,11 @@ class EventSolver final : public Solver<Scalar> {
 
     static void touch(Flight& first, Flight& second, const Vec& separation_m, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
+    auto touching() const {
+        return [this](std::uint32_t one, std::uint32_t other, const Vec& separation_m) {
+            return are_touching(one, other, separation_m);
+        };
+    }
     bool touches_others(std::uint32_t body);
     bool touch_others(const Turning<Scalar>& a, const Turning<Scalar>& b);
     bool touches_any_wall(std::uint32_t body) const;
@@ -338,21 +343,14 @@ Scalar EventSolver<Scalar, Future>::clock_slack_s(std::uint32_t a, std::uint32_t
 // Whether one that hits a wall touches anybody.
 template <typename Scalar, typename Future>
 bool EventSolver<Scalar, Future>::touches_others(std::uint32_t body) {
-    return coasting_.look_around(body, kLookFactor<Scalar>,
-                                 [&](std::uint32_t one, std::uint32_t other, const Vec& apart_m) {
-                                     return are_touching(one, other, apart_m);
-                                 });
+    return coasting_.look_around(body, kLookFactor<Scalar>, touching());
 }
 
 // Whether two that meet, and would fly on like this, touch anything else.
 template <typename Scalar, typename Future>
 bool EventSolver<Scalar, Future>::touch_others(const Turning<Scalar>& a, const Turning<Scalar>& b) {
     return touches_any_wall(a.body) || touches_any_wall(b.body) ||
-           coasting_.look_around_both(
-               a, b, kLookFactor<Scalar>,
-               [&](std::uint32_t one, std::uint32_t other, const Vec& apart_m) {
-                   return are_touching(one, other, apart_m);
-               });
+           coasting_.look_around_both(a, b, kLookFactor<Scalar>, touching());
 }
 
 template <typename Scalar, typename Future>

@@ -6,6 +6,7 @@
 #include "common/physics/solver_swept.h"
 #include "common/physics/world.h"
 #include "tests/physics/crowds.h"
+#include "tests/physics/event_lives.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -115,13 +116,7 @@ TEST(CrowdExtremes, an_inelastic_crowd_collapses_without_overrun) {
         Dice dice(kSeed);
         Scene scene = random_crowd({.max_radius_m = 0.7, .filled = 0.35}, dice);
         scene.restitution = restitution;
-        World<double> world(scene, kInWindows);
-        const double energy_j = world.kinetic_energy_j();
-        for (int tick = 0; tick < 400; ++tick) {
-            ASSERT_FALSE(world.step(kTick).overrun) << tick;
-            ASSERT_LT(world.deepest_overlap(), 1e-12) << tick;
-        }
-        EXPECT_LT(world.kinetic_energy_j(), energy_j);
+        expect_collapse_without_overrun(scene, 400);
     }
 }
 
@@ -134,17 +129,7 @@ TEST(CrowdExtremes, balls_that_start_in_each_other_part_without_overrun) {
         scene.bodies.push_back({dice.in_box(4.0), dice.in_box(3.0), 0.5, dice.between(0.5, 2.0)});
     }
     scene.bodies[1].position_m = scene.bodies[0].position_m;
-    World<double> world(scene, kInWindows);
-    World<float> coarse(scene, kInWindows);
-    const double energy_j = world.kinetic_energy_j();
-    for (int tick = 0; tick < 300; ++tick) {
-        ASSERT_FALSE(world.step(kTick).overrun) << tick;
-        ASSERT_FALSE(coarse.step(static_cast<float>(kTick)).overrun) << tick;
-    }
-    EXPECT_TRUE(all_finite(world));
-    EXPECT_TRUE(all_finite(coarse));
-    EXPECT_NEAR(world.kinetic_energy_j() / energy_j, 1.0, 1e-12);
-    EXPECT_NEAR(coarse.kinetic_energy_j() / energy_j, 1.0, 1e-4);
+    expect_parting_without_overrun(scene);
 }
 
 TEST(CrowdExtremes,

@@ -7,6 +7,7 @@
 #include "common/physics/world.h"
 #include "tests/harness/sanitized.h"
 #include "tests/physics/crowds.h"
+#include "tests/physics/event_lives.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -240,20 +241,8 @@ std::uint64_t hash_after_a_crowded_life(std::uint64_t seed) {
     Scene standing = random_crowd({.balls = 400, .max_radius_m = 0.8}, dice);
     standing.walls.reset();
     stand_on(Disc{20.0}, standing);
-    std::uint64_t hash = 0;
-    for (const Scene& scene : {walled, mixed, standing}) {
-        World<Scalar> world(scene, kWindows);
-        for (int tick = 0; tick < 180; ++tick) {
-            if (tick % 60 == 30) {
-                world.set_velocity(world.ids()[0], dice.in_box(20.0).cast<Scalar>());
-                world.add({dice.in_box(9.0), dice.in_box(10.0), 0.4, 1.0});
-            }
-            world.step(Scalar(1) / Scalar(60));
-        }
-        EXPECT_GT(world.audit().ball_collisions, 100U);
-        hash = hash * 31 + world.state_hash();
-    }
-    return hash;
+    const Scene scenes[] = {walled, mixed, standing};
+    return hash_after_visits<Scalar>(scenes, 180, 60, dice);
 }
 
 // Change these only together with a change of the physics that is meant to change trajectories, or

@@ -12,6 +12,7 @@
 #include "common/physics/world.h"
 #include "tests/harness/sanitized.h"
 #include "tests/physics/brute_force.h"
+#include "tests/physics/event_lives.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -397,20 +398,8 @@ std::uint64_t hash_after_a_life_of_events(std::uint64_t seed) {
     walled.restitution = 0.97;
     open.walls.reset();
     open.platform = Disc{18.0};
-    std::uint64_t hash = 0;
-    for (const Scene& scene : {walled, open, periodic_gas(gas, dice)}) {
-        World<Scalar> world(scene, kEvent);
-        for (int tick = 0; tick < 300; ++tick) {
-            if (tick % 100 == 50) {
-                world.set_velocity(world.ids()[0], dice.in_box(20.0).cast<Scalar>());
-                world.add({dice.in_box(9.0), dice.in_box(10.0), 0.4, 1.0});
-            }
-            world.step(Scalar(1) / Scalar(60));
-        }
-        EXPECT_GT(world.audit().ball_collisions, 100U);
-        hash = hash * 31 + world.state_hash();
-    }
-    return hash;
+    const Scene scenes[] = {walled, open, periodic_gas(gas, dice)};
+    return hash_after_visits<Scalar>(scenes, 300, 100, dice);
 }
 
 // Change these only together with a change of the physics that is meant to change trajectories.
@@ -463,13 +452,7 @@ TEST(EventSolver, inelastic_balls_collapse_without_overrun) {
         Dice dice(kSeed);
         Scene scene = random_gas({.balls = 80, .half_width_m = 8.0}, dice);
         scene.restitution = restitution;
-        World<double> world(scene, kEvent);
-        const double energy_j = world.kinetic_energy_j();
-        for (int tick = 0; tick < 600; ++tick) {
-            ASSERT_FALSE(world.step(kTick).overrun) << tick;
-            ASSERT_LT(world.deepest_overlap(), 1e-12) << tick;
-        }
-        EXPECT_LT(world.kinetic_energy_j(), energy_j);
+        expect_collapse_without_overrun(scene, 600);
     }
 }
 
@@ -482,17 +465,7 @@ TEST(EventSolver, balls_that_start_in_each_other_part_without_overrun) {
         scene.bodies.push_back({dice.in_box(2.0), dice.in_box(3.0), 0.5, dice.between(0.5, 2.0)});
     }
     scene.bodies[1].position_m = scene.bodies[0].position_m;
-    World<double> world(scene, kEvent);
-    World<float> coarse(scene, kEvent);
-    const double energy_j = world.kinetic_energy_j();
-    for (int tick = 0; tick < 300; ++tick) {
-        ASSERT_FALSE(world.step(kTick).overrun) << tick;
-        ASSERT_FALSE(coarse.step(static_cast<float>(kTick)).overrun) << tick;
-    }
-    EXPECT_TRUE(all_finite(world));
-    EXPECT_TRUE(all_finite(coarse));
-    EXPECT_NEAR(world.kinetic_energy_j() / energy_j, 1.0, 1e-12);
-    EXPECT_NEAR(coarse.kinetic_energy_j() / energy_j, 1.0, 1e-4);
+    expect_parting_without_overrun(scene);
 }
 
 }  // namespace
