@@ -73,29 +73,41 @@ void Coasting<Scalar>::fit_cells() {
     for (std::uint32_t body = 0; body < flights_.size(); ++body) {
         const Vec position = position_m(body);
         for (std::uint32_t axis = 0; axis < 2; ++axis) {
-            prospects_[body].cell[axis] = cells_.cell_of(axis, position[axis]);
+            known_[body].cell[axis] = cells_.cell_of(axis, position[axis]);
         }
     }
     rebases_to_renumber_ = kRenumberEvery;
-    this->renumber();
+    renumber_by_cells();
     // Of each pair the later one is answerable.
     for (const std::uint32_t index : living_) {
         const std::uint32_t body = body_at_[index];
         predict(body);
-        cells_.put_in(body, prospects_[body].cell[0], prospects_[body].cell[1]);
+        cells_.put_in(body, known_[body].cell[0], known_[body].cell[1]);
     }
 }
 
 template <typename Scalar>
+void Coasting<Scalar>::renumber_by_cells() {
+    in_cells_.clear();
+    for (std::uint32_t body = 0; body < this->places(); ++body) {
+        in_cells_.push_back({known_[body].cell[1], known_[body].cell[0], body});
+    }
+    std::sort(in_cells_.begin(), in_cells_.end());
+    this->order_.clear();
+    for (const InCell& place : in_cells_) this->order_.push_back(place.body);
+    this->renumber();
+}
+
+template <typename Scalar>
 void Coasting<Scalar>::remove(std::uint32_t body) {
-    cells_.take_out(body, prospects_[body].cell[0], prospects_[body].cell[1]);
+    cells_.take_out(body, known_[body].cell[0], known_[body].cell[1]);
     calendar_.remove(index_of(body));
     this->bury(body);
 }
 
 template <typename Scalar>
 void Coasting<Scalar>::enter_in_calendar(std::uint32_t body) {
-    const Prospect& prospect = prospects_[body];
+    const Prospect& prospect = known_[body];
     calendar_.set(index_of(body), std::min(prospect.meeting_s, prospect.border_s));
 }
 
@@ -107,11 +119,11 @@ void Coasting<Scalar>::rebase() {
     calendar_.rebase(shift_s);
     if (rebases_to_renumber_-- == 0) {
         rebases_to_renumber_ = kRenumberEvery;
-        this->renumber();
+        renumber_by_cells();
         cells_.clear();
         for (const std::uint32_t index : living_) {
             const std::uint32_t body = body_at_[index];
-            cells_.put_in(body, prospects_[body].cell[0], prospects_[body].cell[1]);
+            cells_.put_in(body, known_[body].cell[0], known_[body].cell[1]);
         }
     }
     if (model_.periodic) return;
@@ -133,7 +145,7 @@ Due Coasting<Scalar>::next_as() {
         if (turns_left_ == 0) return {Happening::kUnfinished, now_s_, 0, 0};
         --turns_left_;
         const std::uint32_t body = body_at_[first.body];
-        const Prospect& prospect = prospects_[body];
+        const Prospect& prospect = known_[body];
         if (prospect.meeting_s <= prospect.border_s) {
             if (holds(prospect)) {
                 return {Happening::kMeeting, first.time_s, body, prospect.with};
@@ -189,7 +201,7 @@ void Coasting<Scalar>::expect_meeting(std::uint32_t body) {
 
 template <typename Scalar>
 void Coasting<Scalar>::expect(std::uint32_t body, const Meeting& meeting) {
-    Prospect& prospect = prospects_[body];
+    Prospect& prospect = known_[body];
     prospect.meeting_s = meeting.time_s;
     prospect.with = meeting.with;
     if (meeting.with != kNobody) prospect.with_events = flights_[meeting.with].events;
@@ -199,7 +211,7 @@ template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::look(std::uint32_t body, const View& view, Meeting& best) {
     const Flight& self = flights_[body];
-    find<Has::kPeriodic>(prospects_[body].cell, view, [&](std::uint32_t* end, Image image) {
+    find<Has::kPeriodic>(known_[body].cell, view, [&](std::uint32_t* end, Image image) {
         gather(end, body, kNobody, self.since_s, about_, [&](const Neighbours<Scalar>& about) {
             look_at<Has>(about, ~0U, body, image, best);
         });
@@ -252,7 +264,7 @@ template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::expect_border(std::uint32_t body) {
     const Flight& flight = flights_[body];
-    Prospect& prospect = prospects_[body];
+    Prospect& prospect = known_[body];
     double time_s[2] = {kNever<double>, kNever<double>};
     Border border[2] = {Border::kNone, Border::kNone};
     std::uint32_t up[2];
@@ -291,7 +303,7 @@ void Coasting<Scalar>::expect_border(std::uint32_t body) {
 template <typename Scalar>
 template <typename Has>
 void Coasting<Scalar>::cross(std::uint32_t body) {
-    Prospect& prospect = prospects_[body];
+    Prospect& prospect = known_[body];
     const std::uint32_t axis = prospect.side / 2, up = prospect.side % 2;
     const bool knows_meeting = holds(prospect);
     cells_.take_out(body, prospect.cell[0], prospect.cell[1]);
@@ -324,7 +336,7 @@ void Coasting<Scalar>::look_in_front(std::uint32_t body, std::uint32_t axis, std
         (axis == 0 ? view.x1 : view.y1) = 2 * up;
         return look<Has>(body, view, best);
     }
-    gather(cells_.find_three(prospects_[body].cell, axis, up, found_.data()), body, kNobody,
+    gather(cells_.find_three(known_[body].cell, axis, up, found_.data()), body, kNobody,
            self.since_s, about_,
            [&](const Neighbours<Scalar>& about) { look_at<Has>(about, ~0U, body, Image(), best); });
 }
@@ -333,7 +345,7 @@ template <typename Scalar>
 void Coasting<Scalar>::go_round(std::uint32_t body, std::uint32_t axis, bool up) {
     this->move_to_now(body);
     Flight& flight = flights_[body];
-    std::uint32_t& cell = prospects_[body].cell[axis];
+    std::uint32_t& cell = known_[body].cell[axis];
     std::uint32_t& turns = axis == 0 ? this->turns_[body].x : this->turns_[body].y;
     if (up) {
         flight.position_m[axis] -= extent_m_[axis];

@@ -38,12 +38,13 @@ inline constexpr std::uint32_t kRebaseEvery = 64;
 inline constexpr std::uint32_t kRenumberEvery = 32;
 
 template <typename Scalar>
-class Coasting : public Flights<Scalar> {
+class Coasting : public Flights<Scalar, Prospect> {
   public:
-    using typename Flights<Scalar>::Vec;
-    using typename Flights<Scalar>::Flight;
-    using Flights<Scalar>::kNobody;
-    using Flights<Scalar>::index_of, Flights<Scalar>::is_immovable, Flights<Scalar>::position_m;
+    using Base = Flights<Scalar, Prospect>;
+    using typename Base::Vec;
+    using typename Base::Flight;
+    using Base::kNobody;
+    using Base::index_of, Base::is_immovable, Base::position_m;
 
     // Takes over all living bodies, and predicts. It is for any.
     bool begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model);
@@ -63,7 +64,7 @@ class Coasting : public Flights<Scalar> {
     void break_span() { this->break_off_span(); }
 
     // Whether no cell is beyond that of the body on some side: all that touch a wall are such.
-    bool is_at_border(std::uint32_t body) const { return is_at_border(prospects_[body].cell); }
+    bool is_at_border(std::uint32_t body) const { return is_at_border(known_[body].cell); }
     void predict(std::uint32_t body) { (this->*predict_)(body); }
     void remove(std::uint32_t body);
 
@@ -92,13 +93,11 @@ class Coasting : public Flights<Scalar> {
     void for_each_near(std::uint32_t body, Visit&& visit);
 
   private:
-    using Base = Flights<Scalar>;
-    using Base::flights_, Base::prospects_, Base::body_at_, Base::living_;
+    using Border = Prospect::Border;
+    using Base::flights_, Base::known_, Base::body_at_, Base::living_;
     using Base::model_, Base::extent_m_, Base::now_s_, Base::end_s_;
     using Base::time_after;
-    using typename Base::Border;
     using typename Base::Image;
-    using typename Base::Prospect;
 
     struct Meeting {
         double time_s;
@@ -113,6 +112,10 @@ class Coasting : public Flights<Scalar> {
         std::uint32_t index = kNobody;
         Image image;
         friend auto operator<=>(const Near&, const Near&) = default;
+    };
+    struct InCell {
+        std::uint32_t row = 0, column = 0, body = 0;
+        friend auto operator<=>(const InCell&, const InCell&) = default;
     };
     // What a body saw about it.
     struct Sight {
@@ -135,6 +138,7 @@ class Coasting : public Flights<Scalar> {
     template <bool kPeriodic, bool kWalls, bool kPlatform>
     void choose();
     void fit_cells();
+    void renumber_by_cells();
     bool holds(const Prospect& prospect) const {
         return prospect.with == kNobody || flights_[prospect.with].events == prospect.with_events;
     }
@@ -216,13 +220,14 @@ class Coasting : public Flights<Scalar> {
     Sight sights_[2];
     std::vector<Near> near_;
     std::vector<Vec> sample_m_;
+    std::vector<InCell> in_cells_;  // by renumber_by_cells
 };
 
 template <typename Scalar>
 template <typename Visit>
 void Coasting<Scalar>::for_each_near(std::uint32_t body, Visit&& visit) {
     near_.clear();
-    find<true>(prospects_[body].cell, View(), [&](const std::uint32_t* end, Image image) {
+    find<true>(known_[body].cell, View(), [&](const std::uint32_t* end, Image image) {
         for (const std::uint32_t* at = found_.data(); at != end; ++at)
             near_.push_back({index_of(*at), image});
     });
@@ -255,7 +260,7 @@ bool Coasting<Scalar>::look_around(std::uint32_t sight, std::uint32_t body, std:
                                    Scalar factor, Touches&& touches) {
     std::uint32_t looks = 0;
     bool any = false;
-    find<true>(prospects_[body].cell, View(), [&](std::uint32_t* end, Image image) {
+    find<true>(known_[body].cell, View(), [&](std::uint32_t* end, Image image) {
         gather(end, body, partner, now_s_, seen_[sight], [&](const Neighbours<Scalar>& about) {
             ++looks;
             any = any || touches_any(about, ~0U, body, shift_of(image), factor, touches);
@@ -271,7 +276,7 @@ template <typename Touches>
 bool Coasting<Scalar>::look_around_both(const Turning<Scalar>& one, const Turning<Scalar>& other,
                                         Scalar factor, Touches&& touches) {
     const std::uint32_t a = one.body, b = other.body;
-    const std::uint32_t *const cell_a = prospects_[a].cell, *const cell_b = prospects_[b].cell;
+    const std::uint32_t *const cell_a = known_[a].cell, *const cell_b = known_[b].cell;
     typename EventCells<Scalar>::AboutTwo found;
     if (!(model_.periodic && (is_at_border(a) || is_at_border(b)))) {
         found = cells_.find_about_two(cell_a, cell_b, found_.data());
@@ -344,11 +349,11 @@ template <typename Scalar>
 void Coasting<Scalar>::fetch_upcoming() {
     const auto fetch = [&](std::uint32_t body) {
         __builtin_prefetch(&flights_[body], 1);
-        __builtin_prefetch(&prospects_[body], 1);
+        __builtin_prefetch(&known_[body], 1);
     };
     for (std::uint32_t i = 0; i < due_soon_.count; ++i) {
-        const std::uint32_t body = due_soon_.body[i], with = prospects_[body].with;
-        cells_.fetch(prospects_[body].cell[0], prospects_[body].cell[1]);
+        const std::uint32_t body = due_soon_.body[i], with = known_[body].with;
+        cells_.fetch(known_[body].cell[0], known_[body].cell[1]);
         fetch(with == kNobody ? body : with);
     }
     due_soon_.count = 0;

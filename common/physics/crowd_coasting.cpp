@@ -91,8 +91,8 @@ Due CrowdCoasting<Scalar>::next() {
         }
         --turns_left_;
         due_ = first;
-        __builtin_prefetch(&this->prospects_[first.a], 1);
-        if (first.kind == EventKind::kBall) __builtin_prefetch(&this->prospects_[first.b], 1);
+        __builtin_prefetch(&known_[first.a], 1);
+        if (first.kind == EventKind::kBall) __builtin_prefetch(&known_[first.b], 1);
         constexpr Happening kWhat[] = {Happening::kMeeting, Happening::kWall, Happening::kFall};
         return {kWhat[static_cast<int>(first.kind)], first.time_s, first.a, first.b};
     }
@@ -113,7 +113,7 @@ void CrowdCoasting<Scalar>::read_ahead() {
         });
     }
     for (const std::uint32_t body : soon_) {
-        read_ += flights_[body].events + this->prospects_[body].apart_from + paths_.cell_of(body);
+        read_ += flights_[body].events + known_[body].apart_from + paths_.cell_of(body);
     }
     for (const std::uint32_t body : soon_) read_ += paths_.read_cells(body);
     for (const std::uint32_t body : soon_) read_ += paths_.read_paths(body);
@@ -128,6 +128,18 @@ void CrowdCoasting<Scalar>::number_living() {
 }
 
 template <typename Scalar>
+void CrowdCoasting<Scalar>::renumber_by_paths() {
+    this->order_.clear();
+    paths_.for_each([&](std::uint32_t body) { this->order_.push_back(body); });
+    for (const std::uint32_t stray : paths_.strays()) this->order_.push_back(stray);
+    for (std::uint32_t body = 0; body < this->places(); ++body) {
+        if (this->living_at(body) == kNobody) this->order_.push_back(body);
+    }
+    this->renumber();
+    number_living();
+}
+
+template <typename Scalar>
 std::size_t CrowdCoasting<Scalar>::more_strays() const {
     return crowd_.size() / kBodiesPerStray + kMoreStrays;
 }
@@ -137,9 +149,7 @@ void CrowdCoasting<Scalar>::fit() {
     windows_to_fit_ = kWindowsPerFit;
     paths_.fit(flights_, crowd_, now_s_, model_.walls, model_.equal_radii);
     paths_.begin(flights_, crowd_, now_s_);
-    for (const std::uint32_t body : crowd_) this->prospects_[body].cell[1] = paths_.cell_of(body);
-    this->renumber();
-    number_living();
+    renumber_by_paths();
 }
 
 template <typename Scalar>

@@ -25,11 +25,12 @@
 namespace fts::physics {
 
 template <typename Scalar>
-class CrowdCoasting : public Flights<Scalar> {
+class CrowdCoasting : public Flights<Scalar, Known> {
   public:
-    using typename Flights<Scalar>::Vec;
-    using typename Flights<Scalar>::Flight;
-    using Flights<Scalar>::kNobody;
+    using Base = Flights<Scalar, Known>;
+    using typename Base::Vec;
+    using typename Base::Flight;
+    using Base::kNobody;
     // From so many bodies on it pays.
     static constexpr std::size_t kFewest = 256;
 
@@ -78,14 +79,14 @@ class CrowdCoasting : public Flights<Scalar> {
 
   private:
     using Expected = Event<double>;
-    using Base = Flights<Scalar>;
-    using Base::flights_, Base::model_, Base::now_s_, Base::end_s_;
+    using Base::flights_, Base::known_, Base::model_, Base::now_s_, Base::end_s_;
     using Box = typename Model<Scalar>::Box;
 
     std::size_t more_strays() const;
     void fit();
     void begin_window();
     void number_living();
+    void renumber_by_paths();
     void read_ahead();
     bool is_stale(const Expected& event) const {
         return flights_[event.a].events != event.count_a ||
@@ -168,16 +169,21 @@ bool CrowdCoasting<Scalar>::look_around_both(const Turning<Scalar>& one,
                                              Touches&& touches) {
     sights_[0] = paths_.see(one, now_s_, factor);
     sights_[1] = paths_.see(other, now_s_, factor);
-    if (!sights_[0].is_one || !sights_[1].is_one || !strays_.empty()) [[unlikely]] {
+    if (!sights_[0].is_one || !sights_[1].is_one) [[unlikely]] {
         return look_around(one.body, other.body, factor, touches) ||
                look_around(other.body, one.body, factor, touches);
     }
+    const bool sees_more = !paths_.sees_but_one(sights_[0]) || !paths_.sees_but_one(sights_[1]);
+    if (!sees_more && strays_.empty()) [[likely]]
+        return false;
     bool any = false;
     for (const auto& sight : sights_) {
-        paths_.for_each_close(sight, [&](std::uint32_t third) {
+        const auto look_at = [&](std::uint32_t third) {
             if (any || third == one.body || third == other.body) return;
             any = touches(sight.body, third, this->separation_m(sight.body, third));
-        });
+        };
+        std::for_each(strays_.begin(), strays_.end(), look_at);
+        if (sees_more) paths_.for_each_close(sight, look_at);
     }
     return any;
 }

@@ -117,6 +117,7 @@ void FlightPaths<Scalar>::fit_limits(std::size_t bodies) {
     const std::size_t cells = std::size_t{width_} * height_;
     first_.resize(cells + 2);
     borders_.resize(cells);
+    border_cells_.reserve(cells);
     starts_.reserve(bodies);
     places_.reserve(bodies);
     whose_.reserve(bodies);
@@ -132,6 +133,7 @@ void FlightPaths<Scalar>::fit_limits(std::size_t bodies) {
 template <typename Scalar>
 void FlightPaths<Scalar>::fit_borders(const std::optional<Box>& bounds) {
     std::fill(borders_.begin(), borders_.end(), std::uint8_t{0});
+    border_cells_.clear();
     if (!bounds) return;
     const Scalar far = static_cast<Scalar>(longest_way_ + largest_radius_ + 4.0F * blur_) * cell_m_;
     const auto is_within = [&](std::uint32_t axis, std::uint32_t cell) {
@@ -140,7 +142,9 @@ void FlightPaths<Scalar>::fit_borders(const std::optional<Box>& bounds) {
     };
     for (std::uint32_t y = 0; y < height_; ++y) {
         for (std::uint32_t x = 0; x < width_; ++x) {
-            if (!is_within(0, x) || !is_within(1, y)) borders_[std::size_t{y} * width_ + x] = 1;
+            if (is_within(0, x) && is_within(1, y)) continue;
+            borders_[std::size_t{y} * width_ + x] = 1;
+            border_cells_.push_back(y * width_ + x);
         }
     }
 }
@@ -176,25 +180,36 @@ void FlightPaths<Scalar>::begin(const RoomyVector<Flight>& flights,
         start->body = body;
         ++start;
     }
-    const auto paths = static_cast<std::size_t>(start - starts_.data());
     std::uint32_t sum = 0;
     for (std::uint32_t& first : first_) first = sum += first;
-    std::uint32_t* const next = first_.data() + 1;
-    whose_.resize(paths);
-    for (std::size_t i = 0; i < paths; ++i) {
-        const PathStart& from = starts_[i];
-        const std::uint32_t path = next[from.cell]++;
-        paths_[path] = {from.x, from.y, from.way_x, from.way_y};
-        whose_[path] = {from.body, from.cell};
-        places_[from.body] = {path, from.cell};
-        if (borders_[from.cell] != 0) [[unlikely]]
-            at_border_.push_back(from.body);
-        if (!equal_radii_) {
-            radii_[path] = static_cast<float>(flights[from.body].radius_m * per_m_);
+    sort_starts(static_cast<std::size_t>(start - starts_.data()));
+    if (!equal_radii_) {
+        for (std::size_t path = 0; path < whose_.size(); ++path) {
+            radii_[path] = static_cast<float>(flights[whose_[path].body].radius_m * per_m_);
         }
     }
-    std::fill_n(paths_.begin() + static_cast<std::ptrdiff_t>(paths), kPathsAtOnce,
-                Path{kNowhere, kNowhere, kNowhere, kNowhere});
+    for (const std::uint32_t cell : border_cells_) {
+        for (std::uint32_t path = first_[cell]; path < first_[cell + 1]; ++path) {
+            at_border_.push_back(whose_[path].body);
+        }
+    }
+}
+
+template <typename Scalar>
+void FlightPaths<Scalar>::sort_starts(std::size_t count) {
+    whose_.resize(count);
+    std::uint32_t* const next = first_.data() + 1;
+    Path* const paths = paths_.data();
+    WhosePath* const whose = whose_.data();
+    Place* const places = places_.data();
+    const PathStart* const end = starts_.data() + count;
+    for (const PathStart* from = starts_.data(); from != end; ++from) {
+        const std::uint32_t path = next[from->cell]++;
+        paths[path] = {from->x, from->y, from->way_x, from->way_y};
+        whose[path] = {from->body, from->cell};
+        places[from->body] = {path, from->cell};
+    }
+    std::fill_n(paths + count, kPathsAtOnce, Path{kNowhere, kNowhere, kNowhere, kNowhere});
 }
 
 template <typename Scalar>

@@ -81,6 +81,11 @@ class FlightPaths {
         visit_found(all, all.rows_about(places_[sight.body].cell), sight.seen.meeting, sight.test,
                     visit);
     }
+    // Of two that meet: itself and the other one are close to it, and else nobody.
+    bool sees_but_one(const Sight& sight) const {
+        const std::uint32_t close = sight.seen.close, others = close & (close - 1);
+        return (close & kHasLongRow) == 0 && (others & (others - 1)) == 0;
+    }
     template <typename Visit>
     void for_each_close(const Sight& sight, Visit&& visit) const {
         const AllPaths all = all_paths();
@@ -92,6 +97,11 @@ class FlightPaths {
     // It flies on like this.
     void follow(const Sight& sight) { paths_[places_[sight.body].path] = sight.test.self; }
 
+    // visit(body) for each path, in the order of cells.
+    template <typename Visit>
+    void for_each(Visit&& visit) const {
+        for (const WhosePath& path : whose_) visit(path.body);
+    }
     // visit(other) for each path that may come within the box in the window.
     template <typename Visit>
     void for_each_within(const Box& box, Visit&& visit) const;
@@ -129,6 +139,7 @@ class FlightPaths {
     void fit_limits(std::size_t bodies);
     void fit_borders(const std::optional<Box>& bounds);
     float close_limit(Scalar factor) const;
+    void sort_starts(std::size_t count);
     // False when that is no path that starts in the cell.
     bool find_path(const Vec& position_m, const Vec& velocity_mps, float part, std::uint32_t cell,
                    Path& path) const;
@@ -173,6 +184,7 @@ class FlightPaths {
     RoomyVector<PathPartners> found_;
     const PathKernels* kernels_ = nullptr;
     std::vector<std::uint8_t> borders_;  // by cell
+    std::vector<std::uint32_t> border_cells_;
     std::vector<Scalar> sample_;
 };
 

@@ -9,13 +9,13 @@
 
 namespace fts::physics {
 
-template <typename Scalar>
-void Flights<Scalar>::take_over(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::take_over(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
     model_ = model;
     if (model_.periodic) extent_m_ = model_.periodic->extent_m();
     now_s_ = begin_s_ = end_s_ = end_rest_s_ = 0.0;
     flights_.assign(bodies.ids.size(), Flight());
-    prospects_.assign(bodies.ids.size(), Prospect());
+    known_.assign(bodies.ids.size(), KnownOf());
     turns_.assign(model_.periodic ? bodies.ids.size() : 0, Turns());
     apart_.clear();
     free_apart_ = kNobody;
@@ -26,7 +26,7 @@ void Flights<Scalar>::take_over(const Bodies<Scalar>& bodies, const Model<Scalar
         const std::uint32_t index = bodies.ids[body].index;
         living_.push_back(index);
         living_at_.push_back(index);
-        prospects_[body].id = bodies.ids[body];
+        known_[body].id = bodies.ids[body];
         body_at_[index] = body;
         Flight& flight = flights_[body];
         flight.position_m = bodies.position_m[index];
@@ -34,14 +34,14 @@ void Flights<Scalar>::take_over(const Bodies<Scalar>& bodies, const Model<Scalar
         flight.radius_m = bodies.radius_m[index];
         flight.mass_kg = bodies.mass_kg[index];
         flight.index = index;
-        prospects_[body].hit_s = -std::numeric_limits<double>::infinity();
+        known_[body].hit_s = -std::numeric_limits<double>::infinity();
     }
 }
 
 // The sum of many spans to twice the precision (Knuth's two-sum), so that ticks do not add up their
 // round-off.
-template <typename Scalar>
-void Flights<Scalar>::lay_span(double span_s) {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::lay_span(double span_s) {
     const double ahead = span_s + end_rest_s_;
     begin_s_ = now_s_;
     end_s_ = now_s_ + ahead;
@@ -49,16 +49,14 @@ void Flights<Scalar>::lay_span(double span_s) {
     end_rest_s_ = (now_s_ - (end_s_ - rounded)) + (ahead - rounded);
 }
 
-template <typename Scalar>
-void Flights<Scalar>::break_off_span() {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::break_off_span() {
     end_s_ = now_s_;
     end_rest_s_ = 0.0;
 }
 
-template <typename Scalar>
-Vec2<Scalar> Flights<Scalar>::separation_m(const Flight& a, const Flight& b) const {
-    Vec apart_m = a.position_at(now_s_) - b.position_at(now_s_);
-    if (!model_.periodic) return apart_m;
+template <typename Scalar, typename KnownOf>
+Vec2<Scalar> Flights<Scalar, KnownOf>::nearest_m(const Vec& apart_m) const {
     // What is nearer than that has no nearer image.
     const auto is_near = [&](int axis) {
         return std::abs(apart_m[axis]) < Scalar(0.25) * extent_m_[axis];
@@ -67,27 +65,27 @@ Vec2<Scalar> Flights<Scalar>::separation_m(const Flight& a, const Flight& b) con
     return nearest_image<Scalar>(apart_m, model_.periodic);
 }
 
-template <typename Scalar>
-void Flights<Scalar>::turn(std::uint32_t body, const Vec& velocity_mps) {
-    prospects_[body].hit_s = now_s_;
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::turn(std::uint32_t body, const Vec& velocity_mps) {
+    known_[body].hit_s = now_s_;
     if (is_immovable(body)) return;
     assert(flights_[body].since_s == now_s_);
     flights_[body].velocity_mps = velocity_mps;
     ++flights_[body].events;
-    prospects_[body].sides_kept_off = 0;
+    known_[body].sides_kept_off = 0;
     forget_apart(body);
 }
 
-template <typename Scalar>
-void Flights<Scalar>::keep_apart(std::uint32_t a, std::uint32_t b) {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::keep_apart(std::uint32_t a, std::uint32_t b) {
     if (is_immovable(a)) std::swap(a, b);
-    Prospect& prospect = prospects_[a];
-    if (!model_.periodic && prospect.apart_from == kNobody) {
-        prospect.apart_from = b;
-        prospect.apart_from_events = flights_[b].events;
+    KnownOf& known = known_[a];
+    if (!model_.periodic && known.apart_from == kNobody) {
+        known.apart_from = b;
+        known.apart_from_events = flights_[b].events;
         return;
     }
-    Apart apart{b, flights_[b].events, 0, 0, prospect.apart};
+    Apart apart{b, flights_[b].events, 0, 0, known.apart};
     if (model_.periodic) {
         const Vec apart_m = position_m(a) - position_m(b);
         const auto boxes = [&](int axis) {
@@ -99,19 +97,19 @@ void Flights<Scalar>::keep_apart(std::uint32_t a, std::uint32_t b) {
         apart.image_y = boxes(1) + turns_[a].y - turns_[b].y;
     }
     if (free_apart_ == kNobody) {
-        prospect.apart = static_cast<std::uint32_t>(apart_.size());
+        known.apart = static_cast<std::uint32_t>(apart_.size());
         apart_.push_back(apart);
         return;
     }
     const std::uint32_t place = std::exchange(free_apart_, apart_[free_apart_].next);
     apart_[place] = apart;
-    prospect.apart = place;
+    known.apart = place;
 }
 
-template <typename Scalar>
-void Flights<Scalar>::forget_apart(std::uint32_t body) {
-    prospects_[body].apart_from = kNobody;
-    std::uint32_t& first = prospects_[body].apart;
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::forget_apart(std::uint32_t body) {
+    known_[body].apart_from = kNobody;
+    std::uint32_t& first = known_[body].apart;
     while (first != kNobody) {
         const std::uint32_t freed = first;
         first = apart_[freed].next;
@@ -120,10 +118,10 @@ void Flights<Scalar>::forget_apart(std::uint32_t body) {
     }
 }
 
-template <typename Scalar>
-bool Flights<Scalar>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const {
+template <typename Scalar, typename KnownOf>
+bool Flights<Scalar, KnownOf>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const {
     const auto a_has_b = [&](std::uint32_t one, std::uint32_t other, int x, int y) {
-        const Prospect& mine = prospects_[one];
+        const KnownOf& mine = known_[one];
         const std::uint32_t events = flights_[other].events;
         if (mine.apart_from == other && mine.apart_from_events == events) return true;
         for (std::uint32_t place = mine.apart; place != kNobody; place = apart_[place].next) {
@@ -141,56 +139,49 @@ bool Flights<Scalar>::are_kept_apart(std::uint32_t a, std::uint32_t b, Image ima
     return a_has_b(a, b, image.x, image.y) || a_has_b(b, a, -image.x, -image.y);
 }
 
-template <typename Scalar>
-void Flights<Scalar>::bury(std::uint32_t body) {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::bury(std::uint32_t body) {
     forget_apart(body);
     ++flights_[body].events;
     living_at_[body] = kNobody;
     living_.erase(std::lower_bound(living_.begin(), living_.end(), index_of(body)));
 }
 
-template <typename Scalar>
-double Flights<Scalar>::coarse_now_s() const {
+template <typename Scalar, typename KnownOf>
+double Flights<Scalar, KnownOf>::coarse_now_s() const {
     constexpr std::uint64_t kExponent = 0x7ff0000000000000;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(now_s_) & kExponent);
 }
 
-template <typename Scalar>
-void Flights<Scalar>::move_epoch(double shift_s) {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::move_epoch(double shift_s) {
     for (std::uint32_t body = 0; body < flights_.size(); ++body) {
         flights_[body].since_s -= shift_s;
-        prospects_[body].meeting_s -= shift_s;
-        prospects_[body].border_s -= shift_s;
-        prospects_[body].hit_s -= shift_s;
+        known_[body].move_epoch(shift_s);
     }
     now_s_ -= shift_s;
     begin_s_ -= shift_s;
     end_s_ -= shift_s;
 }
 
-template <typename Scalar>
-void Flights<Scalar>::renumber() {
+template <typename Scalar, typename KnownOf>
+void Flights<Scalar, KnownOf>::renumber() {
     const auto bodies = static_cast<std::uint32_t>(flights_.size());
-    places_.clear();
-    for (std::uint32_t body = 0; body < bodies; ++body) {
-        places_.push_back({prospects_[body].cell[1], prospects_[body].cell[0], body});
-    }
-    std::sort(places_.begin(), places_.end());
+    assert(order_.size() == bodies);
     old_flights_ = flights_;
-    old_prospects_ = prospects_;
+    old_known_ = known_;
     new_body_.resize(bodies);
     for (std::uint32_t body = 0; body < bodies; ++body) {
-        const std::uint32_t old_body = places_[body].body;
+        const std::uint32_t old_body = order_[body];
         new_body_[old_body] = body;
         flights_[body] = old_flights_[old_body];
-        prospects_[body] = old_prospects_[old_body];
+        known_[body] = old_known_[old_body];
     }
     for (std::uint32_t body = 0; body < bodies; ++body) {
         body_at_[index_of(body)] = body;
-        Prospect& prospect = prospects_[body];
-        for (std::uint32_t* other : {&prospect.with, &prospect.apart_from}) {
-            if (*other != kNobody) *other = new_body_[*other];
-        }
+        known_[body].for_each_other([&](std::uint32_t& other) {
+            if (other != kNobody) other = new_body_[other];
+        });
     }
     if (model_.periodic) {
         old_turns_ = turns_;
@@ -202,7 +193,9 @@ void Flights<Scalar>::renumber() {
     for (Apart& apart : apart_) apart.other = new_body_[apart.other];
 }
 
-template class Flights<double>;
-template class Flights<float>;
+template class Flights<double, Known>;
+template class Flights<float, Known>;
+template class Flights<double, Prospect>;
+template class Flights<float, Prospect>;
 
 }  // namespace fts::physics

@@ -23,6 +23,7 @@
 
 #include "common/physics/bodies.h"
 #include "common/physics/flight.h"
+#include "common/physics/prospect.h"
 #include "common/physics/roomy_vector.h"
 #include "common/physics/solver.h"
 
@@ -50,12 +51,13 @@ struct Turning {
     Vec2<Scalar> position_m, velocity_mps;
 };
 
-template <typename Scalar>
+// What is known of a body is Known, or a Prospect.
+template <typename Scalar, typename KnownOf>
 class Flights {
   public:
     using Vec = Vec2<Scalar>;
     using Flight = physics::Flight<Scalar>;
-    static constexpr std::uint32_t kNobody = 0xffffffff;
+    static constexpr std::uint32_t kNobody = physics::kNobody;
 
     // Time goes on to a moment, not beyond what is due.
     void advance_to(double time_s) { now_s_ = std::max(now_s_, time_s); }
@@ -66,10 +68,10 @@ class Flights {
     double until_end_s() const { return end_s_ - now_s_; }
     double clock_s() const { return now_s_; }  // since the epoch
     double flown_s(std::uint32_t body) const { return now_s_ - flights_[body].since_s; }
-    double last_hit_ago_s(std::uint32_t body) const { return now_s_ - prospects_[body].hit_s; }
+    double last_hit_ago_s(std::uint32_t body) const { return now_s_ - known_[body].hit_s; }
 
     std::uint32_t index_of(std::uint32_t body) const { return flights_[body].index; }
-    BodyId id_of(std::uint32_t body) const { return prospects_[body].id; }
+    BodyId id_of(std::uint32_t body) const { return known_[body].id; }
     std::uint32_t body_at(std::uint32_t index) const { return body_at_[index]; }
     const Flight& flight(std::uint32_t body) const { return flights_[body]; }
     // In the order of memory: the index of who lives in a place, or nobody.
@@ -79,15 +81,11 @@ class Flights {
     Vec position_m(std::uint32_t body) const { return flights_[body].position_at(now_s_); }
     // From b, or its nearest image, to a; now.
     Vec separation_m(std::uint32_t a, std::uint32_t b) const {
-        return separation_m(flights_[a], flights_[b]);
+        return separation_m(position_m(a), position_m(b));
     }
-    Vec separation_m(const Flight& a, const Flight& b) const;
-    // As if the body were where it is now, and flew on from there.
-    Flight flight_from_now(std::uint32_t body) const {
-        Flight flight = flights_[body];
-        flight.position_m = flight.position_at(now_s_);
-        flight.since_s = now_s_;
-        return flight;
+    Vec separation_m(const Vec& a_m, const Vec& b_m) const {
+        const Vec apart_m = a_m - b_m;
+        return model_.periodic ? nearest_m(apart_m) : apart_m;
     }
 
     // The body is where it is now, and flies on from there.
@@ -103,30 +101,11 @@ class Flights {
     // To be called after `turn` and before `predict`, of what touches. Not both are immovable.
     void keep_apart(std::uint32_t a, std::uint32_t b);
     void keep_off_wall(std::uint32_t body, std::uint32_t side) {
-        prospects_[body].sides_kept_off |= static_cast<std::uint8_t>(1U << side);
+        known_[body].sides_kept_off |= static_cast<std::uint8_t>(1U << side);
     }
     bool is_immovable(std::uint32_t body) const { return std::isinf(flights_[body].mass_kg); }
 
   protected:
-    enum class Border : std::uint8_t { kNone, kCell, kWall, kFall };
-
-    // What else is known of a body.
-    struct alignas(64) Prospect {
-        double meeting_s = 0.0;  // to the calendar, as is the border
-        double border_s = 0.0;
-        double hit_s = 0.0;  // the last event
-        std::uint32_t cell[2] = {0, 0};
-        std::uint32_t with = kNobody;   // whom it meets
-        std::uint32_t with_events = 0;  // what had happened to that one when this was predicted
-        // Whom it is kept apart from: one, where there are no images, and those in a list.
-        std::uint32_t apart_from = kNobody;
-        std::uint32_t apart_from_events = 0;
-        std::uint32_t apart = kNobody;  // the first
-        BodyId id;
-        Border border = Border::kNone;
-        std::uint8_t side = 0;
-        std::uint8_t sides_kept_off = 0;  // a bit for each
-    };
     struct Image {  // of a neighbour: so many boxes away
         int x = 0, y = 0;
         friend auto operator<=>(const Image&, const Image&) = default;
@@ -143,8 +122,9 @@ class Flights {
     void move_epoch(double shift_s);
     // The greatest power of two that is not above now.
     double coarse_now_s() const;
-    // In the order of their cells.
+    // All bodies, in the order of order_.
     void renumber();
+    Vec nearest_m(const Vec& apart_m) const;  // of all images
     bool are_kept_apart(std::uint32_t a, std::uint32_t b, Image image) const;
     bool may_be_kept_apart(const Approach<Scalar>& approach, Scalar reach_m, std::uint32_t a,
                            std::uint32_t b) const {
@@ -152,7 +132,7 @@ class Flights {
                                                        flights_[b].velocity_mps.squaredNorm());
     }
     bool has_wall(std::uint32_t body, std::uint32_t side) const {
-        return !is_immovable(body) && (prospects_[body].sides_kept_off >> side & 1U) == 0;
+        return !is_immovable(body) && (known_[body].sides_kept_off >> side & 1U) == 0;
     }
     double time_after(const Flight& flight, Scalar wait_s) const {
         return std::max(now_s_, flight.since_s + static_cast<double>(wait_s));
@@ -163,7 +143,7 @@ class Flights {
     double now_s_ = 0.0;
     double begin_s_ = 0.0, end_s_ = 0.0;  // of the span
     RoomyVector<Flight> flights_;         // by body, as are the next
-    RoomyVector<Prospect> prospects_;
+    RoomyVector<KnownOf> known_;
     RoomyVector<std::uint32_t> body_at_;  // by index
     std::vector<std::uint32_t> living_;   // indices, ascending
     // How often each went round the periodic box, modulo 2^32. By body, where there is one.
@@ -171,6 +151,7 @@ class Flights {
         std::uint32_t x = 0, y = 0;
     };
     std::vector<Turns> turns_;
+    std::vector<std::uint32_t> order_;  // for renumber
 
   private:
     struct Apart {
@@ -179,24 +160,21 @@ class Flights {
         std::uint32_t image_x, image_y;  // of the other, counted where both once were
         std::uint32_t next;
     };
-    struct InCell {
-        std::uint32_t row = 0, column = 0, body = 0;
-        friend auto operator<=>(const InCell&, const InCell&) = default;
-    };
     void forget_apart(std::uint32_t body);
 
     double end_rest_s_ = 0.0;               // of the span's end
     std::vector<std::uint32_t> living_at_;  // the index by body, or kNobody
     RoomyVector<Apart> apart_;
     std::uint32_t free_apart_ = kNobody;
-    std::vector<InCell> places_;  // by renumber, as are the next
-    RoomyVector<Flight> old_flights_;
-    RoomyVector<Prospect> old_prospects_;
+    RoomyVector<Flight> old_flights_;  // by renumber, as are the next
+    RoomyVector<KnownOf> old_known_;
     std::vector<std::uint32_t> new_body_;
     std::vector<Turns> old_turns_;
 };
 
-extern template class Flights<double>;
-extern template class Flights<float>;
+extern template class Flights<double, Known>;
+extern template class Flights<float, Known>;
+extern template class Flights<double, Prospect>;
+extern template class Flights<float, Prospect>;
 
 }  // namespace fts::physics

@@ -50,7 +50,8 @@ class EventSolver final : public Solver<Scalar> {
     std::uint32_t fall(std::uint32_t body);
     std::uint32_t collide_together(const Due& due);
 
-    static void touch(Flight& first, Flight& second, const Vec& separation_m, Scalar slack_s);
+    static void touch(Turning<Scalar>& first, Turning<Scalar>& second, const Vec& separation_m,
+                      Scalar reach_m, Scalar slack_s);
     Scalar clock_slack_s(std::uint32_t a, std::uint32_t b) const;
     auto touching() const {
         return [this](std::uint32_t one, std::uint32_t other, const Vec& separation_m) {
@@ -157,36 +158,42 @@ std::uint32_t EventSolver<Scalar, Future>::process(const Due& due) {
 // nothing happens.
 template <typename Scalar, typename Future>
 std::uint32_t EventSolver<Scalar, Future>::meet(const Due& due) {
+    // Of the one that is first in the order of indices, and of the other.
     const bool in_order = coasting_.index_of(due.body) < coasting_.index_of(due.other);
-    const std::uint32_t a = in_order ? due.body : due.other, b = in_order ? due.other : due.body;
-    Flight one = coasting_.flight_from_now(a), two = coasting_.flight_from_now(b);
-    const Vec met_at = coasting_.separation_m(one, two);
-    const Scalar depth = penetration(met_at.norm(), one.radius_m, two.radius_m);
-    const Vec velocity_a = one.velocity_mps, velocity_b = two.velocity_mps;
+    const std::uint32_t pair[] = {due.body, due.other};
+    const std::uint32_t a = pair[in_order ? 0 : 1], b = pair[in_order ? 1 : 0];
+    const Flight &flight_a = coasting_.flight(a), &flight_b = coasting_.flight(b);
+    const Vec velocity_a = flight_a.velocity_mps, velocity_b = flight_b.velocity_mps;
+    const Scalar radius_a = flight_a.radius_m, reach = radius_a + flight_b.radius_m;
+    Turning<Scalar> turns[] = {{a, coasting_.position_m(a), velocity_a},
+                               {b, coasting_.position_m(b), velocity_b}};
+    const Vec met_at = coasting_.separation_m(turns[0].position_m, turns[1].position_m);
+    const Scalar depth = penetration(met_at.norm(), radius_a, flight_b.radius_m);
     Vec separation = met_at;
     if (met_at.dot(velocity_a - velocity_b) < Scalar(0)) {
-        touch(one, two, met_at, clock_slack_s(a, b));
-        separation = coasting_.separation_m(one, two);
+        touch(turns[0], turns[1], met_at, reach, clock_slack_s(a, b));
+        separation = coasting_.separation_m(turns[0].position_m, turns[1].position_m);
     }
     const Mover<Scalar> first{separation, velocity_a, coasting_.mass_kg(a)};
     const Mover<Scalar> second{Vec::Zero(), velocity_b, coasting_.mass_kg(b)};
     const auto hit = impact(first, second, restitution_of(was_just_hit(a) || was_just_hit(b)));
-    const Turning<Scalar> turn_a{a, one.position_m, hit ? hit->velocity_1_mps : velocity_a};
-    const Turning<Scalar> turn_b{b, two.position_m, hit ? hit->velocity_2_mps : velocity_b};
-    if (in_order ? touch_others(turn_a, turn_b) : touch_others(turn_b, turn_a)) {
+    if (hit) {
+        turns[0].velocity_mps = hit->velocity_1_mps;
+        turns[1].velocity_mps = hit->velocity_2_mps;
+    }
+    if (touch_others(turns[in_order ? 0 : 1], turns[in_order ? 1 : 0])) {
         return collide_together(due);
     }
-    coasting_.set_position(a, one.position_m);
-    coasting_.set_position(b, two.position_m);
+    coasting_.set_position(a, turns[0].position_m);
+    coasting_.set_position(b, turns[1].position_m);
     if (!hit) {
         coasting_.predict(due.body);
         return 0;
     }
     const Vec position = present_position_m(a);
-    record_->contacts.push_back(
-        {id_of(a), id_of(b), time_in_step(), position - one.radius_m * hit->normal, hit->normal,
-         hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
-         velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
+    record_->contacts.push_back({id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
+               hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
+               velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
     account(record_->contacts.back(), record_->audit);
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
@@ -318,12 +325,12 @@ Vec2<Scalar> EventSolver<Scalar, Future>::present_position_m(std::uint32_t body)
 // After moving to the time of impact, which is only as fine as the clock, the pair is moved on
 // along its own velocities until it just touches.
 template <typename Scalar, typename Future>
-void EventSolver<Scalar, Future>::touch(Flight& first, Flight& second, const Vec& separation_m,
-                                        Scalar slack_s) {
+inline void EventSolver<Scalar, Future>::touch(Turning<Scalar>& first, Turning<Scalar>& second,
+                                        const Vec& separation_m, Scalar reach_m, Scalar slack_s) {
     const Vec& d = separation_m;
     const Scalar distance = d.norm();
     const Scalar closing = -d.dot(first.velocity_mps - second.velocity_mps) / distance;
-    const Scalar gap = distance - (first.radius_m + second.radius_m);
+    const Scalar gap = distance - reach_m;
     if (!(std::abs(gap) <= closing * slack_s)) return;
     const Scalar wait_s = gap / closing;
     first.position_m += first.velocity_mps * wait_s;

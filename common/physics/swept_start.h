@@ -15,7 +15,7 @@ namespace fts::physics {
 struct PathStart {
     float x, y;
     float way_x, way_y;  // twice the motion of the span
-    std::uint32_t cell, body;
+    std::uint32_t body, cell;
 };
 
 // How metres become cells, and within what each of x, y, way_x and way_y must be, limits included.
