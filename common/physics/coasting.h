@@ -41,10 +41,10 @@ template <typename Scalar>
 class Coasting : public Flights<Scalar, Prospect> {
   public:
     using Base = Flights<Scalar, Prospect>;
-    using typename Base::Vec;
-    using typename Base::Flight;
-    using Base::kNobody;
     using Base::index_of, Base::is_immovable, Base::position_m;
+    using Base::kNobody;
+    using typename Base::Flight;
+    using typename Base::Vec;
 
     // Takes over all living bodies, and predicts. It is for any.
     bool begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model);

@@ -28,9 +28,9 @@ template <typename Scalar>
 class CrowdCoasting : public Flights<Scalar, Known> {
   public:
     using Base = Flights<Scalar, Known>;
-    using typename Base::Vec;
-    using typename Base::Flight;
     using Base::kNobody;
+    using typename Base::Flight;
+    using typename Base::Vec;
     // From so many bodies on it pays.
     static constexpr std::size_t kFewest = 256;
 

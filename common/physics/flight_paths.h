@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -84,7 +85,9 @@ class FlightPaths {
     // Of two that meet: itself and the other one are close to it, and else nobody.
     bool sees_but_one(const Sight& sight) const {
         const std::uint32_t close = sight.seen.close, others = close & (close - 1);
-        return (close & kHasLongRow) == 0 && (others & (others - 1)) == 0;
+        if ((close & kHasLongRow) != 0) return false;
+        assert(others != 0);
+        return (others & (others - 1)) == 0;
     }
     template <typename Visit>
     void for_each_close(const Sight& sight, Visit&& visit) const {

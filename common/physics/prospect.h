@@ -15,7 +15,7 @@ struct alignas(32) Known {
     // Whom it is kept apart from: one, where there are no images, and those in a list.
     std::uint32_t apart_from = kNobody;
     std::uint32_t apart_from_events = 0;
-    std::uint32_t apart = kNobody;  // the first
+    std::uint32_t apart = kNobody;    // the first
     std::uint8_t sides_kept_off = 0;  // a bit for each
 
     void move_epoch(double shift_s) { hit_s -= shift_s; }

@@ -191,9 +191,10 @@ std::uint32_t EventSolver<Scalar, Future>::meet(const Due& due) {
         return 0;
     }
     const Vec position = present_position_m(a);
-    record_->contacts.push_back({id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
-               hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
-               velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
+    record_->contacts.push_back(
+        {id_of(a), id_of(b), time_in_step(), position - radius_a * hit->normal, hit->normal,
+         hit->impulse_ns, position, position - separation, velocity_a, hit->velocity_1_mps,
+         velocity_b, hit->velocity_2_mps, first.mass_kg, second.mass_kg, depth});
     account(record_->contacts.back(), record_->audit);
     coasting_.turn(a, hit->velocity_1_mps);
     coasting_.turn(b, hit->velocity_2_mps);
@@ -326,7 +327,8 @@ Vec2<Scalar> EventSolver<Scalar, Future>::present_position_m(std::uint32_t body)
 // along its own velocities until it just touches.
 template <typename Scalar, typename Future>
 inline void EventSolver<Scalar, Future>::touch(Turning<Scalar>& first, Turning<Scalar>& second,
-                                        const Vec& separation_m, Scalar reach_m, Scalar slack_s) {
+                                               const Vec& separation_m, Scalar reach_m,
+                                               Scalar slack_s) {
     const Vec& d = separation_m;
     const Scalar distance = d.norm();
     const Scalar closing = -d.dot(first.velocity_mps - second.velocity_mps) / distance;
