@@ -10,60 +10,73 @@
 namespace fts::physics {
 namespace {
 
-constexpr double kUntouched = -1.0;
+template <typename Scalar>
+constexpr Scalar kUntouched = Scalar(-1);
 
+template <typename Scalar>
 struct Places {
     RoomyVector<std::uint32_t> slot;
-    RoomyVector<double> x, y;
+    RoomyVector<Scalar> x, y;
 };
 
-Places scattered(std::uint32_t slots, std::uint32_t count, std::mt19937& random) {
-    Places places;
+template <typename Scalar>
+Places<Scalar> scattered(std::uint32_t slots, std::uint32_t count, std::mt19937& random) {
+    Places<Scalar> places;
     places.slot.resize(slots);
     std::iota(places.slot.begin(), places.slot.end(), 0U);
     std::shuffle(places.slot.begin(), places.slot.end(), random);
     places.slot.resize(count);
     for (const std::uint32_t slot : places.slot) {
-        places.x.push_back(slot);
-        places.y.push_back(slot + 0.5);
+        places.x.push_back(static_cast<Scalar>(slot));
+        places.y.push_back(static_cast<Scalar>(slot) + Scalar(0.5));
     }
     return places;
 }
 
-void expect_all_at_their_slots(SlotScatter<double>& scatter, const Places& places,
+template <typename Scalar>
+void expect_all_at_their_slots(SlotScatter<Scalar>& scatter, const Places<Scalar>& places,
                                std::uint32_t slots) {
-    RoomyVector<Vec2<double>> to(slots, {kUntouched, kUntouched});
+    RoomyVector<Vec2<Scalar>> to(slots, Vec2<Scalar>::Constant(kUntouched<Scalar>));
     scatter.write(places.slot, places.x, places.y, to);
     std::size_t written = 0, wrong = 0;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
-        if (to[slot].x() == kUntouched) continue;
+        if (to[slot].x() == kUntouched<Scalar>) continue;
         ++written;
-        if (to[slot] != Vec2<double>(slot, slot + 0.5)) ++wrong;
+        const auto x = static_cast<Scalar>(slot);
+        if (to[slot] != Vec2<Scalar>(x, x + Scalar(0.5))) ++wrong;
     }
     EXPECT_EQ(written, places.slot.size());
     EXPECT_EQ(wrong, 0U);
 }
 
-TEST(SlotScatter, every_value_comes_to_its_slot_however_many_there_are) {
+template <typename Scalar>
+class SlotScatterTest : public testing::Test {};
+using Scalars = testing::Types<double, float>;
+TYPED_TEST_SUITE(SlotScatterTest, Scalars);
+
+TYPED_TEST(SlotScatterTest, every_value_comes_to_its_slot_however_many_there_are) {
+    using Scalar = TypeParam;
     constexpr std::uint32_t kSeed = 5;
     SCOPED_TRACE(kSeed);
     std::mt19937 random(kSeed);
-    for (const std::uint32_t slots : {0U, 1U, 1000U, 790'001U, 1'048'576U, 1'048'577U}) {
+    for (const std::uint32_t slots :
+         {0U, 1U, 1000U, 790'001U, 1'048'576U, 1'048'577U, 2'097'152U, 2'097'153U}) {
         SCOPED_TRACE(slots);
-        SlotScatter<double> scatter;
-        expect_all_at_their_slots(scatter, scattered(slots, slots, random), slots);
+        SlotScatter<Scalar> scatter;
+        expect_all_at_their_slots(scatter, scattered<Scalar>(slots, slots, random), slots);
     }
 }
 
-TEST(SlotScatter, vacant_slots_are_left_alone_and_a_new_order_is_followed) {
+TYPED_TEST(SlotScatterTest, vacant_slots_are_left_alone_and_a_new_order_is_followed) {
+    using Scalar = TypeParam;
     constexpr std::uint32_t kSeed = 5;
     SCOPED_TRACE(kSeed);
     std::mt19937 random(kSeed);
-    constexpr std::uint32_t kSlots = 800'000;
-    SlotScatter<double> scatter;
+    constexpr std::uint32_t kSlots = 1'600'000;
+    SlotScatter<Scalar> scatter;
     for (const std::uint32_t count : {kSlots, kSlots - 7, kSlots}) {
         scatter.forget();
-        expect_all_at_their_slots(scatter, scattered(kSlots, count, random), kSlots);
+        expect_all_at_their_slots(scatter, scattered<Scalar>(kSlots, count, random), kSlots);
     }
 }
 

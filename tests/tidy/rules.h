@@ -78,7 +78,8 @@ inline constexpr auto kThirdParties = std::to_array<ThirdParty>({
     {"the compiler's vector instructions", "emmintrin.h immintrin.h",
      "common/physics/crowd_loops.h common/physics/crowd_kernels_avx2.cpp "
      "common/physics/crowd_kernels_avx512.cpp common/physics/swept_lanes.cpp "
-     "common/physics/swept_lanes_avx2.cpp common/physics/swept_start.h "
+     "common/physics/slot_scatter.h common/physics/swept_lanes_avx2.cpp "
+     "common/physics/swept_start.h "
      "common/physics/event_cells.cpp common/physics/flight_filter_avx2.cpp "
      "common/physics/flight_filter_avx512.cpp common/physics/path_kernels_avx2.cpp "
      "common/physics/path_kernels_avx512.cpp",
