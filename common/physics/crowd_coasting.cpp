@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/physics/solver_event.h"
 #include "common/physics/time_of_impact.h"
 
 namespace fts::physics {
@@ -35,7 +36,7 @@ constexpr double kStrayBoxSlack = 16.0;
 
 template <typename Scalar>
 bool CrowdCoasting<Scalar>::begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model) {
-    if (bodies.ids.size() < kFewest || model.periodic) return false;
+    if (bodies.ids.size() < kFewestInWindows || model.periodic) return false;
     this->take_over(bodies, model);
     number_living();
     kernels_ = &flight_kernels<Scalar>(best_simd_level(), model.equal_radii);

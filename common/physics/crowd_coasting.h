@@ -31,8 +31,6 @@ class CrowdCoasting : public Flights<Scalar, Known> {
     using Base::kNobody;
     using typename Base::Flight;
     using typename Base::Vec;
-    // From so many bodies on it pays.
-    static constexpr std::size_t kFewest = 256;
 
     // Takes over all living bodies. False when they are not of a kind: then somebody else should.
     bool begin(const Bodies<Scalar>& bodies, const Model<Scalar>& model);

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "common/physics/solver_event.h"
+
 namespace fts::physics {
 namespace {
 
@@ -31,18 +33,27 @@ constexpr double kMaxDiscreteRadiusRatio = 8.0;
 // Units of round-off of the largest length, over the smallest radius.
 constexpr double kExactErrorInUlps = 64.0;
 
-// Nanoseconds on the machine that the accuracy page was measured on, at 1,000 bodies.
+// Nanoseconds on the machine that the accuracy page was measured on, all positions read every tick.
 struct Cost {
     double per_body_tick;  // per substep
     double per_collision;
     double of_float;  // over that of double
 };
-constexpr Cost kDiscreteCost = {4.5, 220.0, 0.95};
-constexpr Cost kSweptCost = {30.0, 950.0, 1.05};
-constexpr Cost kEventCost = {1.0, 1400.0, 1.2};
+struct Costs {
+    Cost discrete, swept, event;
+};
+constexpr Costs kCostsOfFew = {  // at 100 bodies
+    {4.6, 185.0, 0.97},
+    {14.0, 490.0, 1.05},
+    {4.0, 600.0, 1.1}};
+constexpr Costs kCostsOfCrowd = {  // at 1,000, which event foresees in windows
+    {4.6, 185.0, 0.97},
+    {15.0, 700.0, 1.05},
+    {4.0, 530.0, 1.05}};
 
 struct Scale {
     std::size_t bodies = 0;
+    bool is_periodic = false;
     double smallest_radius_m = 0.0, largest_radius_m = 0.0;
     double extent_m = 0.0;  // the largest coordinate
     double step_in_radii = 0.0;
@@ -122,6 +133,7 @@ double typical_speed_mps(const Scene& scene) {
 Scale scale_of(const Scene& scene, const Fidelity& fidelity) {
     Scale scale;
     scale.bodies = scene.bodies.size();
+    scale.is_periodic = scene.periodic.has_value();
     if (scene.bodies.empty()) return scale;
     const auto [smallest, largest] = std::minmax_element(
         scene.bodies.begin(), scene.bodies.end(),
@@ -193,14 +205,18 @@ double substeps_needed(const Scale& scale, const Fidelity& fidelity) {
 
 std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) {
     std::vector<Candidate> found;
+    const bool in_windows = scale.bodies >= kFewestInWindows && !scale.is_periodic;
+    const Costs& costs = in_windows ? kCostsOfCrowd : kCostsOfFew;
     for (const ScalarKind scalar : {ScalarKind::kDouble, ScalarKind::kFloat}) {
         if (scalar == ScalarKind::kFloat && !fidelity.allow_float) continue;
         const double rounding = round_off(scalar, scale);
         found.push_back(
-            {{SolverKind::kSwept, 1}, scalar, rounding, cost_ns(kSweptCost, scale, 1, scalar)});
+            {{SolverKind::kSwept, 1}, scalar, rounding, cost_ns(costs.swept, scale, 1, scalar)});
         if (!fidelity.thrust) {
-            found.push_back(
-                {{SolverKind::kEvent, 1}, scalar, rounding, cost_ns(kEventCost, scale, 1, scalar)});
+            found.push_back({{SolverKind::kEvent, 1},
+                             scalar,
+                             rounding,
+                             cost_ns(costs.event, scale, 1, scalar)});
         }
         const double substeps = substeps_needed(scale, fidelity);
         if (!crowd_may_be_discrete(scale, fidelity) || !(substeps <= kMaxSubsteps)) continue;
@@ -209,7 +225,7 @@ std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) 
         found.push_back({{SolverKind::kDiscrete, count},
                          scalar,
                          error,
-                         cost_ns(kDiscreteCost, scale, count, scalar)});
+                         cost_ns(costs.discrete, scale, count, scalar)});
     }
     return found;
 }

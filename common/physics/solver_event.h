@@ -15,6 +15,7 @@
 // Drift does not bring positions up to date; `synchronise` does. What falls is removed at once.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -26,6 +27,9 @@ namespace fts::physics {
 // budget: a body in a thin gas goes from cell to cell many times between collisions. Reaching it is
 // an overrun.
 inline constexpr std::uint64_t kTurnsPerBudgetedEvent = 64;
+
+// Windows suit crowds of so many and more, in scenes that are not periodic.
+inline constexpr std::size_t kFewestInWindows = 256;
 
 // How the future is kept: for any bodies in a calendar (coasting.h), for a crowd of a kind within
 // windows of time (crowd_coasting.h), which is faster. What happens is the same but for round-off.

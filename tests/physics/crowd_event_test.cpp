@@ -111,7 +111,7 @@ Scene crowd_on(const Platform& platform, CrowdShape shape, Dice& dice) {
     return scene;
 }
 
-// So wide that more than kFewest of the crowd stand on it.
+// So wide that more than kFewestInWindows of the crowd stand on it.
 double half_of(const CrowdShape& shape) {
     return 0.5 * std::sqrt(600.0 * 3.14 * (shape.max_radius_m > 1.0 ? 1.08 : 0.25) / shape.filled);
 }
@@ -347,8 +347,7 @@ TEST(CrowdEvents, a_solver_that_forgets_goes_from_windows_to_a_calendar_and_back
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
     constexpr std::size_t kChanged = 60;
-    const Scene scene =
-        random_crowd({.balls = CrowdCoasting<double>::kFewest + kChanged / 2}, dice);
+    const Scene scene = random_crowd({.balls = kFewestInWindows + kChanged / 2}, dice);
     DrivenCrowd windows(scene, Foresight::kSuitable), calendar(scene, Foresight::kCalendar);
     for (int change = 0; change < 6; ++change) {
         const bool shrinks = change % 2 == 0;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/physics/crowd_coasting.h"
+#include "common/physics/solver_event.h"
 #include "common/physics/world.h"
 #include "tests/harness/sanitized.h"
 #include "tests/physics/crowds.h"
@@ -93,7 +93,7 @@ TEST(CrowdWorld, a_crowd_that_falls_until_few_are_left_is_kicked_and_goes_on) {
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
     const Scene scene = crowd_on_a_disc(17.0, 8.0, dice);
-    ASSERT_GT(scene.bodies.size(), CrowdCoasting<double>::kFewest);
+    ASSERT_GT(scene.bodies.size(), kFewestInWindows);
     World<double> windows(scene, kWindows), swept(scene);
     const auto step_both = [&] {
         windows.step(0.5 * kTick);
@@ -105,7 +105,7 @@ TEST(CrowdWorld, a_crowd_that_falls_until_few_are_left_is_kicked_and_goes_on) {
             ASSERT_NEAR(windows.falls()[i].time_s, swept.falls()[i].time_s, 1e-8);
         }
     };
-    for (int tick = 0; swept.size() >= CrowdCoasting<double>::kFewest && tick < 200; ++tick) {
+    for (int tick = 0; swept.size() >= kFewestInWindows && tick < 200; ++tick) {
         step_both();
         if (HasFatalFailure()) return;
     }

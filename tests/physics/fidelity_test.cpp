@@ -79,6 +79,13 @@ TEST(Fidelity, a_calendar_is_kept_only_where_nobody_thrusts) {
     EXPECT_EQ(plan(scene, {.tolerance = 1e-6, .thrust = true}).solver.kind, SolverKind::kSwept);
 }
 
+TEST(Fidelity, few_that_coast_fast_are_looked_at_in_every_tick_and_a_crowd_is_foreseen) {
+    constexpr Fidelity kExact = {.tolerance = 1e-9};
+    EXPECT_EQ(plan(crowd(100, 0.01), kExact).solver.kind, SolverKind::kEvent);
+    EXPECT_EQ(plan(crowd(100, 1.0), kExact).solver.kind, SolverKind::kSwept);
+    EXPECT_EQ(plan(crowd(400, 1.0), kExact).solver.kind, SolverKind::kEvent);
+}
+
 TEST(Fidelity, exact_is_the_least_error_there_is_and_says_so) {
     const Plan exact = plan(crowd(100, 3.0), {.tolerance = kExactTolerance, .thrust = true});
     EXPECT_EQ(exact.solver.kind, SolverKind::kSwept);
