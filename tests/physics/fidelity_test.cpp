@@ -81,9 +81,9 @@ TEST(Fidelity, a_calendar_is_kept_only_where_nobody_thrusts) {
 
 TEST(Fidelity, few_that_coast_fast_are_looked_at_in_every_tick_and_a_crowd_is_foreseen) {
     constexpr Fidelity kExact = {.tolerance = 1e-9};
-    EXPECT_EQ(plan(crowd(100, 0.01), kExact).solver.kind, SolverKind::kEvent);
-    EXPECT_EQ(plan(crowd(100, 1.0), kExact).solver.kind, SolverKind::kSwept);
-    EXPECT_EQ(plan(crowd(400, 1.0), kExact).solver.kind, SolverKind::kEvent);
+    EXPECT_EQ(plan(crowd(100, 1.0), kExact).solver.kind, SolverKind::kEvent);
+    EXPECT_EQ(plan(crowd(100, 60.0), kExact).solver.kind, SolverKind::kSwept);
+    EXPECT_EQ(plan(crowd(400, 60.0), kExact).solver.kind, SolverKind::kEvent);
 }
 
 TEST(Fidelity, exact_is_the_least_error_there_is_and_says_so) {
