@@ -81,6 +81,21 @@ TEST(HeadOnPairs, pass_through_each_other_where_nothing_looks_between_ticks) {
     EXPECT_EQ(shoot_head_on("event-double", 4.0, 1000).through, 0U);
 }
 
+TEST(Bench, what_would_not_end_is_not_run_and_says_how_many_balls_are_too_many) {
+    const auto why_not = [](const char* engine, std::size_t balls, double radii_per_tick) {
+        return reason_not_to_run({engine, {balls, 0.3, Radii::kEqual, radii_per_tick}});
+    };
+    EXPECT_EQ(why_not("discrete-double", 1'000'000, 2.0), "");
+    EXPECT_EQ(why_not("seed-double", 2'000, 2.0), "");
+    EXPECT_NE(why_not("seed-double", 2'001, 0.05).find("more than 2,000 balls"), std::string::npos);
+    if (find_engine("box2d") == nullptr) GTEST_SKIP() << "Box2D is not in this build";
+    EXPECT_EQ(why_not("box2d", 100'000, 0.05), "");
+    EXPECT_EQ(why_not("box2d", 10'000, 2.0), "");
+    EXPECT_NE(why_not("box2d", 10'001, 2.0).find("more than 10,000 fast balls"), std::string::npos);
+    EXPECT_EQ(why_not("box2d-bullets", 2'000, 0.05), "");
+    EXPECT_NE(why_not("box2d-bullets", 201, 2.0).find("more than 200 fast"), std::string::npos);
+}
+
 TEST(WarmUp, is_shorter_the_larger_and_faster_the_scene_and_moves_a_ball_by_a_radius) {
     EXPECT_EQ(warm_up_ticks({32, 0.3, Radii::kEqual, 0.05}), 60U);
     EXPECT_EQ(warm_up_ticks({10'000, 0.3, Radii::kEqual, 0.05}), 60U);

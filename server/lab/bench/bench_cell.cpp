@@ -1,5 +1,6 @@
 #include "server/lab/bench/bench_cell.h"
 
+#include <algorithm>
 #include <sstream>
 #include <variant>
 
@@ -11,6 +12,8 @@ namespace fts::lab {
 namespace {
 
 constexpr std::uint64_t kSeedOfScenes = 2013;
+// Balls that are as fast meet far more others in a tick than they are near.
+constexpr double kFastRadiiPerTick = 0.5;
 
 // What follows "KEY:" in one part of a name.
 template <typename Value>
@@ -63,8 +66,11 @@ std::string text_of(const BenchScene& scene) {
 std::string reason_not_to_run(const BenchCell& cell) {
     const EngineInfo* const engine = find_engine(cell.engine);
     if (engine == nullptr) return "not in this build";
-    if (cell.scene.balls <= engine->max_balls) return {};
-    return "not run: with more than " + grouped(engine->max_balls) +
+    const bool is_fast = cell.scene.radii_per_tick >= kFastRadiiPerTick;
+    const std::size_t most =
+        is_fast ? std::min(engine->max_balls, engine->max_fast_balls) : engine->max_balls;
+    if (cell.scene.balls <= most) return {};
+    return "not run: with more than " + grouped(most) + (is_fast ? " fast" : "") +
            " balls a tick may take seconds";
 }
 

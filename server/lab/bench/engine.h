@@ -42,6 +42,8 @@ struct EngineInfo {
     bool is_floor = false;
     // Compared with others only where it is named.
     bool is_only_by_name = false;
+    // The same as max_balls, where balls are fast.
+    std::size_t max_fast_balls = physics::kMaxBodies;
 };
 
 // All of this build, in the order of tables. Box2D and Chipmunk are among them when their packages

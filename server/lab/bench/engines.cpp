@@ -70,14 +70,19 @@ void add_solver(std::vector<Known>& all, SolverKind kind, std::size_t max_balls)
 
 void add_peers([[maybe_unused]] std::vector<Known>& all) {
 #ifdef FTS_BOX2D
-    all.push_back({{"box2d", "Box2D", 100'000, false}, [](const Scene& scene, double tick_s) {
-                       return make_box2d(scene, tick_s, Bullets::kNo);
-                   }});
-    // Each time of impact looks at every contact again.
     all.push_back(
-        {{"box2d-bullets", "Box2D, bullets", 2'000, false}, [](const Scene& scene, double tick_s) {
-             return make_box2d(scene, tick_s, Bullets::kYes);
+        {{.name = "box2d", .title = "Box2D", .max_balls = 100'000, .max_fast_balls = 10'000},
+         [](const Scene& scene, double tick_s) {
+             return make_box2d(scene, tick_s, Bullets::kNo);
          }});
+    // Each time of impact looks at every contact again.
+    all.push_back({{.name = "box2d-bullets",
+                    .title = "Box2D, bullets",
+                    .max_balls = 2'000,
+                    .max_fast_balls = 200},
+                   [](const Scene& scene, double tick_s) {
+                       return make_box2d(scene, tick_s, Bullets::kYes);
+                   }});
 #endif
 #ifdef FTS_CHIPMUNK
     all.push_back({{"chipmunk-hash", "Chipmunk, spatial hash", 100'000, false},
