@@ -263,14 +263,15 @@ std::vector<accuracy::Table> speed_tables(const std::map<std::string, KeptSet>& 
 }
 
 std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>& sets) {
+    const std::string what_is_float = " Open marks and dashed lines of solvers are float.";
     std::vector<accuracy::Figure> figures;
     if (sets.contains("growth")) {
         lab::Plot plot = figure_of(results_in(sets, "growth"), lab::BenchAxis::kBalls, "growth");
         plot.title = "How cost grows with the number of balls";
         plot.subtitle =
             "Equal balls in a walled box, packing 0.3, 0.05 r a tick. Memory is the floor: places "
-            "and velocities read and written once a tick. Open marks and dashed lines of solvers "
-            "are float.";
+            "and velocities read and written once a tick." +
+            what_is_float;
         figures.push_back({"speed-growth.svg", plot});
     }
     if (sets.contains("density")) {
@@ -279,7 +280,8 @@ std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>
         plot.title = "What density costs";
         plot.subtitle =
             "10,000 equal balls in a walled box, 0.05 r a tick. Who waits for collisions pays for "
-            "each; who looks for neighbours pays for them.";
+            "each; who looks for neighbours pays for them." +
+            what_is_float;
         figures.push_back({"speed-density.svg", plot});
     }
     if (sets.contains("speed")) {
@@ -287,7 +289,8 @@ std::vector<accuracy::Figure> speed_figures(const std::map<std::string, KeptSet>
         plot.title = "What speed costs";
         plot.subtitle =
             "10,000 equal balls in a walled box, packing 0.3. Beyond about 1 r a tick discrete, "
-            "Chipmunk and Box2D let balls through each other; swept and event never do.";
+            "Chipmunk and Box2D let balls through each other; swept and event never do." +
+            what_is_float;
         figures.push_back({"speed-speed.svg", plot});
     }
     return figures;
