@@ -42,7 +42,6 @@ class Coasting : public Flights<Scalar, Prospect> {
   public:
     using Base = Flights<Scalar, Prospect>;
     using Base::index_of, Base::is_immovable, Base::position_m;
-    using Base::kNobody;
     using typename Base::Flight;
     using typename Base::Vec;
 

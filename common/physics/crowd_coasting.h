@@ -28,7 +28,6 @@ template <typename Scalar>
 class CrowdCoasting : public Flights<Scalar, Known> {
   public:
     using Base = Flights<Scalar, Known>;
-    using Base::kNobody;
     using typename Base::Flight;
     using typename Base::Vec;
 

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "common/physics/flight.h"
 #include "common/physics/roomy_vector.h"
 #include "common/physics/simd_level.h"
 #include "common/physics/solver.h"
@@ -23,8 +24,6 @@ namespace fts::physics {
 template <typename Scalar>
 class EventCells {
   public:
-    static constexpr std::uint32_t kNobody = 0xffffffff;
-
     // Makes empty cells, at least `least_width_m` wide, that suit bodies at `positions_m`; the
     // bounds of what is bounded, and whether opposite sides are one. `slots` is above every body's
     // index.

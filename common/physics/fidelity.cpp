@@ -39,17 +39,13 @@ struct Cost {
     double per_collision;
     double of_float;  // over that of double
 };
-struct Costs {
-    Cost discrete, swept, event;
+constexpr Cost kDiscreteCost = {4.6, 185.0, 0.97};
+struct ExactCosts {
+    Cost swept, event;
 };
-constexpr Costs kCostsOfFew = {  // at 100 bodies
-    {4.6, 185.0, 0.97},
-    {14.0, 490.0, 1.05},
-    {4.0, 600.0, 1.1}};
-constexpr Costs kCostsOfCrowd = {  // at 1,000, which event foresees in windows
-    {4.6, 185.0, 0.97},
-    {15.0, 700.0, 1.05},
-    {4.0, 530.0, 1.05}};
+// At 100 and at 1,000 bodies.
+constexpr ExactCosts kCostsWithCalendar = {{14.0, 490.0, 1.05}, {4.0, 600.0, 1.1}};
+constexpr ExactCosts kCostsInWindows = {{15.0, 700.0, 1.05}, {4.0, 530.0, 1.05}};
 
 struct Scale {
     std::size_t bodies = 0;
@@ -206,7 +202,7 @@ double substeps_needed(const Scale& scale, const Fidelity& fidelity) {
 std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) {
     std::vector<Candidate> found;
     const bool in_windows = scale.bodies >= kFewestInWindows && !scale.is_periodic;
-    const Costs& costs = in_windows ? kCostsOfCrowd : kCostsOfFew;
+    const ExactCosts& costs = in_windows ? kCostsInWindows : kCostsWithCalendar;
     for (const ScalarKind scalar : {ScalarKind::kDouble, ScalarKind::kFloat}) {
         if (scalar == ScalarKind::kFloat && !fidelity.allow_float) continue;
         const double rounding = round_off(scalar, scale);
@@ -225,7 +221,7 @@ std::vector<Candidate> candidates(const Scale& scale, const Fidelity& fidelity) 
         found.push_back({{SolverKind::kDiscrete, count},
                          scalar,
                          error,
-                         cost_ns(costs.discrete, scale, count, scalar)});
+                         cost_ns(kDiscreteCost, scale, count, scalar)});
     }
     return found;
 }

@@ -9,6 +9,9 @@
 
 namespace fts::physics {
 
+// The number of no body.
+inline constexpr std::uint32_t kNobody = 0xffffffff;
+
 // By how many units of round-off a pair may seem to miss and still be computed exactly.
 template <typename Scalar>
 inline constexpr Scalar kFilterSlack = Scalar(1) +

@@ -57,7 +57,6 @@ class Flights {
   public:
     using Vec = Vec2<Scalar>;
     using Flight = physics::Flight<Scalar>;
-    static constexpr std::uint32_t kNobody = physics::kNobody;
 
     // Time goes on to a moment, not beyond what is due.
     void advance_to(double time_s) { now_s_ = std::max(now_s_, time_s); }

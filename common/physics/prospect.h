@@ -3,11 +3,10 @@
 
 #include <cstdint>
 
-#include "common/physics/scene.h"
+#include "common/physics/body.h"
+#include "common/physics/flight.h"
 
 namespace fts::physics {
-
-inline constexpr std::uint32_t kNobody = 0xffffffff;
 
 struct alignas(32) Known {
     double hit_s = 0.0;  // the last event

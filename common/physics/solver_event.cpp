@@ -120,7 +120,7 @@ void EventSolver<Scalar, Future>::synchronise_positions(Bodies<Scalar>& bodies) 
     if (std::exchange(positions_shown_, true)) return;
     for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
         const std::uint32_t index = coasting_.living_at(body);
-        if (index == Future::kNobody) continue;
+        if (index == kNobody) continue;
         const Vec position = coasting_.position_m(body);
         bodies.position_m[index] =
             model_->periodic ? wrapped<Scalar>(position, *model_->periodic) : position;
@@ -132,7 +132,7 @@ void EventSolver<Scalar, Future>::synchronise_velocities(Bodies<Scalar>& bodies)
     if (std::exchange(velocities_shown_, true)) return;
     for (std::uint32_t body = 0; body < coasting_.places(); ++body) {
         const std::uint32_t index = coasting_.living_at(body);
-        if (index == Future::kNobody) continue;
+        if (index == kNobody) continue;
         bodies.velocity_mps[index] = coasting_.flight(body).velocity_mps;
     }
 }

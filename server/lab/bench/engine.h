@@ -38,12 +38,12 @@ struct EngineInfo {
     std::string title;  // "discrete double", "Chipmunk, spatial hash"
     // With more a tick would take seconds; nobody waits for that.
     std::size_t max_balls = physics::kMaxBodies;
+    // The same where they are fast, if that is fewer.
+    std::size_t max_fast_balls = physics::kMaxBodies;
     // A floor and no physics: it lets balls through each other, and nobody minds.
     bool is_floor = false;
     // Compared with others only where it is named.
     bool is_only_by_name = false;
-    // The same as max_balls, where balls are fast.
-    std::size_t max_fast_balls = physics::kMaxBodies;
 };
 
 // All of this build, in the order of tables. Box2D and Chipmunk are among them when their packages

@@ -57,7 +57,7 @@ struct Known {
 template <typename Scalar>
 Known solver_engine(SolverKind kind, const std::string& scalar, std::size_t max_balls) {
     const std::string name(physics::to_string(kind));
-    return {{name + "-" + scalar, name + " " + scalar, max_balls, false},
+    return {{.name = name + "-" + scalar, .title = name + " " + scalar, .max_balls = max_balls},
             [kind](const Scene& scene, double tick_s) {
                 return std::make_unique<WorldEngine<Scalar>>(scene, kind, tick_s);
             }};
@@ -85,11 +85,12 @@ void add_peers([[maybe_unused]] std::vector<Known>& all) {
                    }});
 #endif
 #ifdef FTS_CHIPMUNK
-    all.push_back({{"chipmunk-hash", "Chipmunk, spatial hash", 100'000, false},
-                   [](const Scene& scene, double tick_s) {
-                       return make_chipmunk(scene, tick_s, ChipmunkIndex::kSpatialHash);
-                   }});
-    all.push_back({{"chipmunk-tree", "Chipmunk, box tree", 100'000, false},
+    all.push_back(
+        {{.name = "chipmunk-hash", .title = "Chipmunk, spatial hash", .max_balls = 100'000},
+         [](const Scene& scene, double tick_s) {
+             return make_chipmunk(scene, tick_s, ChipmunkIndex::kSpatialHash);
+         }});
+    all.push_back({{.name = "chipmunk-tree", .title = "Chipmunk, box tree", .max_balls = 100'000},
                    [](const Scene& scene, double tick_s) {
                        return make_chipmunk(scene, tick_s, ChipmunkIndex::kBoxTree);
                    }});
@@ -102,17 +103,18 @@ const std::vector<Known>& known() {
         add_solver(all, SolverKind::kDiscrete, physics::kMaxBodies);
         add_solver(all, SolverKind::kSwept, physics::kMaxBodies);
         add_solver(all, SolverKind::kEvent, physics::kMaxBodies);
-        all.push_back(
-            {{"event-double-unread", "event double, not read", physics::kMaxBodies, false, true},
-             [](const Scene& scene, double tick_s) {
-                 return std::make_unique<WorldEngine<double>>(scene, SolverKind::kEvent, tick_s,
-                                                              false);
-             }});
+        all.push_back({{.name = "event-double-unread",
+                        .title = "event double, not read",
+                        .is_only_by_name = true},
+                       [](const Scene& scene, double tick_s) {
+                           return std::make_unique<WorldEngine<double>>(scene, SolverKind::kEvent,
+                                                                        tick_s, false);
+                       }});
         add_solver(all, SolverKind::kSeed, 2'000);  // looks at every pair
         add_peers(all);
-        all.push_back({{"memory-float", "memory, float", physics::kMaxBodies, true},
+        all.push_back({{.name = "memory-float", .title = "memory, float", .is_floor = true},
                        make_memory_pass<float>});
-        all.push_back({{"memory-double", "memory, double", physics::kMaxBodies, true},
+        all.push_back({{.name = "memory-double", .title = "memory, double", .is_floor = true},
                        make_memory_pass<double>});
         return all;
     }();
