@@ -28,13 +28,6 @@ std::uint32_t most_cells_for(std::uint32_t discs) {
 }  // namespace
 
 template <typename Scalar>
-std::uint32_t CellGrid<Scalar>::Axis::cell_of(Scalar x_m) const {
-    const Scalar cell = (x_m - origin_m) * cells_per_m;
-    const Scalar inside = std::min(std::max(Scalar(0), cell), last_cell);
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
-}
-
-template <typename Scalar>
 void CellGrid<Scalar>::fit_axis(Axis& axis, std::span<const Scalar> x_m) {
     sample_.clear();
     const std::size_t step = std::max<std::size_t>(1, x_m.size() / kSample);

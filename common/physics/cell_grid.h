@@ -10,6 +10,8 @@
 // all cells, so that very unequal discs are found rightly but slowly.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -48,6 +50,11 @@ class CellGrid {
     // but each once: with a box (then all places must be inside, and no pair that near through two
     // images) the distance to the nearest image, to round-off.
     void find_near(const Discs<Scalar>& discs, Scalar margin_m, NearPairs& pairs);
+
+    // Calls `look(disc)` for every disc that was inside `range` at the last search, and for others
+    // near it. Not with a box.
+    template <typename Look>
+    void visit(const typename Model<Scalar>::Box& range, Look look) const;
 
     // The discs of the last search, neighbours near each other.
     void read_order(RoomyVector<std::uint32_t>& order) const;
@@ -94,6 +101,26 @@ class CellGrid {
     std::vector<std::uint32_t> at_side_;
     std::vector<Scalar> sample_;
 };
+
+template <typename Scalar>
+inline std::uint32_t CellGrid<Scalar>::Axis::cell_of(Scalar x_m) const {
+    const Scalar cell = (x_m - origin_m) * cells_per_m;
+    const Scalar inside = std::min(std::max(Scalar(0), cell), last_cell);
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
+}
+
+template <typename Scalar>
+template <typename Look>
+void CellGrid<Scalar>::visit(const typename Model<Scalar>::Box& range, Look look) const {
+    const Axis &column = axis_[0], &row = axis_[1];
+    const std::uint32_t left = column.cell_of(range.min_m.x()) + 1;
+    const std::uint32_t beyond_right = column.cell_of(range.max_m.x()) + 2;
+    const std::uint32_t last_row = row.cell_of(range.max_m.y());
+    for (std::uint32_t r = row.cell_of(range.min_m.y()); r <= last_row; ++r) {
+        const std::uint32_t* const first = first_.data() + std::size_t{r} * stride_;
+        for (std::uint32_t i = first[left]; i < first[beyond_right]; ++i) look(disc_[i]);
+    }
+}
 
 extern template class CellGrid<double>;
 extern template class CellGrid<float>;

@@ -54,14 +54,16 @@ struct PlainLanes {
         }
         return bits;
     }
-    static void move(Value* x, Value* y, const Value* vx, const Value* vy, Value span,
-                     Greatest& greatest) {
-        for (std::uint32_t k = 0; k < kLanes; ++k) {
-            x[k] += vx[k] * span;
-            y[k] += vy[k] * span;
-            const Value squared = vx[k] * vx[k] + vy[k] * vy[k];
+    static std::uint32_t move(const Motion<Value>& in, std::size_t i, Greatest& greatest) {
+        std::uint32_t bits = 0;
+        for (std::uint32_t k = 0; k < kLanes; ++k, ++i) {
+            in.x_m[i] += in.vx_mps[i] * in.span_s;
+            in.y_m[i] += in.vy_mps[i] * in.span_s;
+            const Value squared = in.vx_mps[i] * in.vx_mps[i] + in.vy_mps[i] * in.vy_mps[i];
             greatest = greatest < squared ? squared : greatest;
+            bits |= static_cast<std::uint32_t>(in.usual_squared < squared) << k;
         }
+        return bits;
     }
     static Value greatest_of(const Greatest& greatest) { return greatest; }
 };

@@ -54,10 +54,25 @@ struct Range2 {
 };
 
 template <typename Scalar>
+struct Motion {
+    Scalar *x_m, *y_m;
+    const Scalar *vx_mps, *vy_mps;
+    std::size_t count;
+    Scalar span_s;
+    Scalar usual_squared;   // of a speed
+    std::uint32_t* faster;  // takes the numbers of those who are, ascending
+};
+
+template <typename Scalar>
+struct Speeds {
+    Scalar greatest_squared;
+    std::size_t faster;  // how many
+};
+
+template <typename Scalar>
 struct CrowdKernels {
-    // Moves all by their velocities; gives the greatest square of a speed.
-    Scalar (*advance)(Scalar* x_m, Scalar* y_m, const Scalar* vx_mps, const Scalar* vy_mps,
-                      Scalar span_s, std::size_t count);
+    // Moves all by their velocities.
+    Speeds<Scalar> (*advance)(const Motion<Scalar>& motion);
     // Writes the numbers of the places that are not inside, ascending; gives how many.
     std::size_t (*outside)(const Scalar* x_m, const Scalar* y_m, std::size_t count,
                            const Range2<Scalar>& inside, std::uint32_t* numbers);

@@ -8,7 +8,8 @@
 //     Lanes::take(bits, from, to)   copies from[k] for every bit k; gives how many
 //     Lanes::fill(value, to)        kLanes of them
 //     Lanes::outside(x, y, range)   bit k: (x[k], y[k]) is not inside
-//     Lanes::move(...)              kLanes discs; keeps the greatest squares of speeds
+//     Lanes::move(motion, i, greatest)   kLanes discs from i; keeps the greatest squares of speeds;
+//                                   bit k: that of disc i + k is above the usual
 //
 // PackLanes is that of a `Pack`, local to its source likewise, which has
 //
@@ -59,35 +60,40 @@ struct PackLanes {
     static std::uint32_t outside(const Scalar* x, const Scalar* y, const Range2<Scalar>& range) {
         return Pack::inside(Pack::load(x), Pack::load(y), range) ^ ((1U << kLanes) - 1U);
     }
-    static void move(Scalar* x, Scalar* y, const Scalar* vx, const Scalar* vy, Scalar span,
-                     Greatest& greatest) {
-        const Vector u = Pack::load(vx), v = Pack::load(vy), all_span = Pack::all(span);
-        Pack::store(x, Pack::add(Pack::load(x), Pack::mul(u, all_span)));
-        Pack::store(y, Pack::add(Pack::load(y), Pack::mul(v, all_span)));
-        greatest = Pack::max(greatest, Pack::add(Pack::mul(u, u), Pack::mul(v, v)));
+    static std::uint32_t move(const Motion<Scalar>& in, std::size_t i, Greatest& greatest) {
+        const Vector u = Pack::load(in.vx_mps + i), v = Pack::load(in.vy_mps + i);
+        const Vector span = Pack::all(in.span_s);
+        Pack::store(in.x_m + i, Pack::add(Pack::load(in.x_m + i), Pack::mul(u, span)));
+        Pack::store(in.y_m + i, Pack::add(Pack::load(in.y_m + i), Pack::mul(v, span)));
+        const Vector squared = Pack::add(Pack::mul(u, u), Pack::mul(v, v));
+        greatest = Pack::max(greatest, squared);
+        return Pack::below(Pack::all(in.usual_squared), squared);
     }
     static Scalar greatest_of(const Greatest& greatest) { return Pack::greatest_of(greatest); }
 };
 
 template <typename Lanes>
-typename Lanes::Scalar advance_lanes(typename Lanes::Scalar* x_m, typename Lanes::Scalar* y_m,
-                                     const typename Lanes::Scalar* vx_mps,
-                                     const typename Lanes::Scalar* vy_mps,
-                                     typename Lanes::Scalar span_s, std::size_t count) {
+Speeds<typename Lanes::Scalar> advance_lanes(const Motion<typename Lanes::Scalar>& motion) {
     using Scalar = typename Lanes::Scalar;
+    const Motion<Scalar> in = motion;
     typename Lanes::Greatest greatest{};
-    std::size_t i = 0;
-    for (; i + Lanes::kLanes <= count; i += Lanes::kLanes) {
-        Lanes::move(x_m + i, y_m + i, vx_mps + i, vy_mps + i, span_s, greatest);
+    std::size_t faster = 0, i = 0;
+    for (; i + Lanes::kLanes <= in.count; i += Lanes::kLanes) {
+        std::uint32_t bits = Lanes::move(in, i, greatest);
+        for (; bits != 0; bits &= bits - 1) [[unlikely]] {
+                in.faster[faster++] =
+                    static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(bits));
+            }
     }
     Scalar most = Lanes::greatest_of(greatest);
-    for (; i < count; ++i) {
-        x_m[i] += vx_mps[i] * span_s;
-        y_m[i] += vy_mps[i] * span_s;
-        const Scalar squared = vx_mps[i] * vx_mps[i] + vy_mps[i] * vy_mps[i];
+    for (; i < in.count; ++i) {
+        in.x_m[i] += in.vx_mps[i] * in.span_s;
+        in.y_m[i] += in.vy_mps[i] * in.span_s;
+        const Scalar squared = in.vx_mps[i] * in.vx_mps[i] + in.vy_mps[i] * in.vy_mps[i];
         most = most < squared ? squared : most;
+        if (in.usual_squared < squared) in.faster[faster++] = static_cast<std::uint32_t>(i);
     }
-    return most;
+    return {most, faster};
 }
 
 template <typename Lanes>

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/physics/body.h"
 #include "common/physics/roomy_vector.h"
-#include "common/physics/scene.h"
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -54,8 +54,8 @@ class SlotScatter {
     // From now on places have other slots.
     void forget() { holds_ = false; }
 
-    // to[slot[i]] = (x[i], y[i]) for all places i. Slots are all different.
-    void write(const RoomyVector<std::uint32_t>& slot, const RoomyVector<Scalar>& x,
+    // to[id[i].index] = (x[i], y[i]) for all places i. Slots are all different.
+    void write(const RoomyVector<BodyId>& id, const RoomyVector<Scalar>& x,
                const RoomyVector<Scalar>& y, RoomyVector<Vec>& to);
 
   private:
@@ -68,7 +68,7 @@ class SlotScatter {
     static constexpr std::uint32_t kAhead = 128;
     static constexpr std::uint32_t kInALine = 64 / sizeof(Vec);
 
-    void fit(const RoomyVector<std::uint32_t>& slot);
+    void fit(const RoomyVector<BodyId>& id);
     void read_section(std::uint32_t section) const;
 
     bool holds_ = false;
@@ -79,15 +79,14 @@ class SlotScatter {
 };
 
 template <typename Scalar>
-void SlotScatter<Scalar>::write(const RoomyVector<std::uint32_t>& slot,
-                                const RoomyVector<Scalar>& x, const RoomyVector<Scalar>& y,
-                                RoomyVector<Vec>& to) {
-    const auto count = static_cast<std::uint32_t>(slot.size());
+void SlotScatter<Scalar>::write(const RoomyVector<BodyId>& id, const RoomyVector<Scalar>& x,
+                                const RoomyVector<Scalar>& y, RoomyVector<Vec>& to) {
+    const auto count = static_cast<std::uint32_t>(id.size());
     if (count < to.size() || count * sizeof(Vec) < kManyBytes) {
-        for (std::uint32_t i = 0; i < count; ++i) to[slot[i]] = {x[i], y[i]};
+        for (std::uint32_t i = 0; i < count; ++i) to[id[i].index] = {x[i], y[i]};
         return;
     }
-    if (!holds_) fit(slot);
+    if (!holds_) fit(id);
     for (std::uint32_t i = 0; i < count; ++i) {
         __builtin_prefetch(&values_[by_place_[std::min(i + kAhead, count - 1)]], 1);
         values_[by_place_[i]] = {x[i], y[i]};
@@ -110,8 +109,8 @@ void SlotScatter<Scalar>::read_section(std::uint32_t section) const {
 }
 
 template <typename Scalar>
-void SlotScatter<Scalar>::fit(const RoomyVector<std::uint32_t>& slot) {
-    const auto count = static_cast<std::uint32_t>(slot.size());
+void SlotScatter<Scalar>::fit(const RoomyVector<BodyId>& id) {
+    const auto count = static_cast<std::uint32_t>(id.size());
     shift_ = static_cast<unsigned>(std::bit_width(count - 1)) - kSectionBits;
     for (std::uint32_t section = 0; section < kSections; ++section) {
         const std::uint32_t begin = std::min(count, section << shift_);
@@ -123,7 +122,7 @@ void SlotScatter<Scalar>::fit(const RoomyVector<std::uint32_t>& slot) {
     by_slot_.resize(count);
     std::array<std::uint32_t, kSections + 1> next = first_;
     for (std::uint32_t i = 0; i < count; ++i) {
-        by_place_[i] = by_slot_[slot[i]] = next[slot[i] >> shift_]++;
+        by_place_[i] = by_slot_[id[i].index] = next[id[i].index >> shift_]++;
     }
     holds_ = true;
 }

@@ -1,5 +1,5 @@
-// Every width of vector instructions moves discs, and sees who is outside, as one number at a time
-// does: to the last bit, whatever is left over beside whole vectors.
+// Every width of vector instructions moves discs, and sees who is fast or outside, as one number at
+// a time does: to the last bit, whatever is left over beside whole vectors.
 #include "common/physics/crowd_kernels.h"
 
 #include <cmath>
@@ -31,9 +31,14 @@ std::vector<Scalar> numbers_of(Dice& dice, std::size_t count) {
     return numbers;
 }
 
+// The square of a speed; one of each crowd has just that.
+template <typename Scalar>
+constexpr Scalar kUsual = Scalar(49);
+
 template <typename Scalar>
 struct Moved {
     std::vector<Scalar> x_m, y_m;
+    std::vector<std::uint32_t> faster;
     Scalar greatest_squared = Scalar(0);
     bool operator==(const Moved&) const = default;
 };
@@ -41,10 +46,23 @@ struct Moved {
 template <typename Scalar>
 Moved<Scalar> moved_at(SimdLevel level, std::size_t count, std::uint64_t seed) {
     Dice dice(seed);
-    Moved<Scalar> moved = {numbers_of<Scalar>(dice, count), numbers_of<Scalar>(dice, count)};
-    const auto vx = numbers_of<Scalar>(dice, count), vy = numbers_of<Scalar>(dice, count);
-    moved.greatest_squared = crowd_kernels<Scalar>(level).advance(
-        moved.x_m.data(), moved.y_m.data(), vx.data(), vy.data(), Scalar(0.01), count);
+    Moved<Scalar> moved = {numbers_of<Scalar>(dice, count), numbers_of<Scalar>(dice, count),
+                           std::vector<std::uint32_t>(count)};
+    auto vx = numbers_of<Scalar>(dice, count), vy = numbers_of<Scalar>(dice, count);
+    if (count > 0) {
+        vx.back() = Scalar(7);
+        vy.back() = Scalar(0);
+    }
+    const Speeds<Scalar> speeds = crowd_kernels<Scalar>(level).advance(
+        {moved.x_m.data(), moved.y_m.data(), vx.data(), vy.data(), count, Scalar(0.01),
+         kUsual<Scalar>, moved.faster.data()});
+    moved.faster.resize(speeds.faster);
+    moved.greatest_squared = speeds.greatest_squared;
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (vx[i] * vx[i] + vy[i] * vy[i] > kUsual<Scalar>) expected.push_back(i);
+    }
+    EXPECT_EQ(moved.faster, expected);
     return moved;
 }
 

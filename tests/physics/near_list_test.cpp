@@ -89,6 +89,40 @@ class NearLists : public testing::Test {};
 using Scalars = testing::Types<double, float>;
 TYPED_TEST_SUITE(NearLists, Scalars);
 
+// A crowd whose discs are moved by dice.
+template <typename Scalar>
+struct Walk {
+    Dice& dice;
+    Crowd<Scalar>& crowd;
+    std::optional<typename Model<Scalar>::Box> box = std::nullopt;
+    std::uint32_t fast = 0;  // so many of the first go ten times as far
+
+    Scalar displace(std::uint32_t disc, const Vec2d& by_m) {
+        const Vec2<Scalar> before_m(crowd.x_m[disc], crowd.y_m[disc]);
+        Vec2<Scalar> place_m = before_m + by_m.cast<Scalar>();
+        const Scalar way_m = (place_m - before_m).norm();
+        if (box) place_m = wrapped<Scalar>(place_m, *box);
+        crowd.x_m[disc] = place_m.x();
+        crowd.y_m[disc] = place_m.y();
+        return way_m;
+    }
+    // True when the list was made anew.
+    bool look(NearList<Scalar>& near, double step_m, std::vector<DiscPair>& found) {
+        return near.move_and_find_overlaps(
+            crowd.discs(),
+            [&](std::uint32_t from, std::uint32_t to, Scalar usual_m, auto went_farther) {
+                Scalar farthest_m = Scalar(0);
+                for (std::uint32_t i = from; i < to; ++i) {
+                    const Scalar way_m = displace(i, dice.in_box(i < fast ? 10 * step_m : step_m));
+                    if (way_m > usual_m) went_farther(i, way_m);
+                    farthest_m = std::max(farthest_m, way_m);
+                }
+                return farthest_m;
+            },
+            found);
+    }
+};
+
 // Most looks are small steps, some are leaps, and single discs are moved by other hands.
 template <typename Scalar>
 void expect_what_looking_at_all_finds(SimdLevel level, const Kind& kind, std::uint64_t seed) {
@@ -96,33 +130,23 @@ void expect_what_looking_at_all_finds(SimdLevel level, const Kind& kind, std::ui
     const double half_width_m = dice.between(3.0, 12.0);
     Crowd<Scalar> crowd =
         crowd_of<Scalar>(dice, 20 + dice.below(120), half_width_m, kind.equal_radii);
-    std::optional<typename Model<Scalar>::Box> box;
+    Walk<Scalar> walk = {dice, crowd};
     const Vec2<Scalar> corner = Vec2<Scalar>::Constant(static_cast<Scalar>(half_width_m));
-    if (kind.periodic) box = {-corner, corner};
+    if (kind.periodic) walk.box = {-corner, corner};
     NearList<Scalar> near(level);
-    near.fit(crowd.discs(), box);
+    near.fit(crowd.discs(), walk.box);
     std::vector<DiscPair> found;
     std::size_t overlaps = 0;
     int lists = 0;
     constexpr int kLooks = 60;
     for (int look = 0; look < kLooks; ++look) {
         const double step_m = look % 20 == 19 ? 2.0 : dice.between(0.01, 0.03);
-        const auto displace = [&](std::size_t i, const Vec2d& by_m) {
-            Vec2<Scalar> place_m(crowd.x_m[i] + static_cast<Scalar>(by_m.x()),
-                                 crowd.y_m[i] + static_cast<Scalar>(by_m.y()));
-            if (box) place_m = wrapped<Scalar>(place_m, *box);
-            crowd.x_m[i] = place_m.x();
-            crowd.y_m[i] = place_m.y();
-        };
-        for (std::size_t i = 0; i < crowd.x_m.size(); ++i) displace(i, dice.in_box(step_m));
-        near.all_moved(static_cast<Scalar>(step_m * std::sqrt(2.0)));
-        found.clear();
-        lists += near.find_overlaps(crowd.discs(), found) ? 1 : 0;
-        ASSERT_EQ(in_order(found), pairs_by_looking_at_all(crowd, box)) << "look " << look;
+        lists += walk.look(near, step_m, found) ? 1 : 0;
+        ASSERT_EQ(in_order(found), pairs_by_looking_at_all(crowd, walk.box)) << "look " << look;
         overlaps += found.size();
         for (int k = 0; k < 3; ++k) {
             const auto disc = static_cast<std::uint32_t>(dice.below(crowd.x_m.size()));
-            displace(disc, dice.in_box(0.05));
+            walk.displace(disc, dice.in_box(0.05));
             near.moved(disc, Scalar(0.08));
         }
     }
@@ -147,14 +171,50 @@ TYPED_TEST(NearLists, find_what_looking_at_every_pair_finds) {
 TYPED_TEST(NearLists, find_every_pair_of_a_heap) {
     for (const SimdLevel level : levels_of_this_processor()) {
         Dice dice(5);
-        const auto crowd = crowd_of<TypeParam>(dice, 120, 0.2, true);
+        auto crowd = crowd_of<TypeParam>(dice, 120, 0.2, true);
         NearList<TypeParam> near(level);
         near.fit(crowd.discs(), std::nullopt);
-        near.all_moved(TypeParam(0));
         std::vector<DiscPair> found;
-        near.find_overlaps(crowd.discs(), found);
+        Walk<TypeParam>{dice, crowd}.look(near, 0.0, found);
         EXPECT_EQ(found.size(), 120U * 119U / 2U);
         EXPECT_EQ(in_order(found), pairs_by_looking_at_all(crowd, std::nullopt));
+    }
+}
+
+struct FewFast {
+    std::uint32_t fast;
+    bool equal_radii;
+    int most_lists;
+};
+
+// They hardly shorten the life of the list of all others while they are few, and are not lost when
+// they are too many.
+TYPED_TEST(NearLists, find_those_who_are_much_faster_than_all_others) {
+    constexpr std::size_t kDiscs = 2'100;  // room for two astray
+    constexpr int kLooks = 400, kLastLooks = 100;
+    for (const auto& [fast, equal_radii, most_lists] :
+         {FewFast{0, true, 16}, FewFast{1, true, 18}, FewFast{1, false, 18},
+          FewFast{5, true, kLastLooks}}) {
+        SCOPED_TRACE(testing::Message() << fast << " fast, equal radii " << equal_radii);
+        Dice dice(7);
+        auto crowd = crowd_of<TypeParam>(dice, kDiscs, 30.0, equal_radii);
+        Walk<TypeParam> walk = {dice, crowd, std::nullopt, fast};
+        NearList<TypeParam> near(best_simd_level());
+        near.fit(crowd.discs(), std::nullopt);
+        std::vector<DiscPair> found;
+        std::size_t most_astray = 0;
+        int late_lists = 0;
+        for (int look = 0; look < kLooks; ++look) {
+            const bool is_new = walk.look(near, 0.02, found);
+            late_lists += is_new && look >= kLooks - kLastLooks ? 1 : 0;
+            most_astray = std::max(most_astray, near.astray().size());
+            if (look % 49 != 0) continue;
+            Pairs pairs = in_order(found);
+            pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+            ASSERT_EQ(pairs, pairs_by_looking_at_all(crowd, std::nullopt)) << "look " << look;
+        }
+        EXPECT_EQ(most_astray, 2U);
+        EXPECT_LE(late_lists, most_lists);
     }
 }
 
@@ -217,12 +277,12 @@ TEST(HitOrder, is_by_the_lower_slot_then_the_other_and_each_pair_once) {
         for (const std::size_t pairs : {0U, 1U, 5U, 100U, 5000U}) {
             SCOPED_TRACE(testing::Message() << slots << " slots, " << pairs << " pairs");
             Dice dice(slots + pairs);
-            std::vector<SlotPair> hits;
+            std::vector<BodyPair> hits;
             Pairs expected;
             for (std::size_t k = 0; k < pairs; ++k) {
                 const auto a = static_cast<std::uint32_t>(dice.below(slots));
                 const auto b = static_cast<std::uint32_t>(dice.below(slots));
-                hits.push_back({a, b, b + 7, a + 9});
+                hits.push_back({{a, a + 1}, {b, b + 2}, b + 7, a + 9});
                 expected.emplace_back(a, b);
             }
             std::sort(expected.begin(), expected.end());
@@ -230,9 +290,11 @@ TEST(HitOrder, is_by_the_lower_slot_then_the_other_and_each_pair_once) {
             HitOrder().sort(hits, slots);
             ASSERT_EQ(hits.size(), expected.size());
             for (std::size_t k = 0; k < hits.size(); ++k) {
-                ASSERT_EQ(std::pair(hits[k].slot_a, hits[k].slot_b), expected[k]);
-                ASSERT_EQ(hits[k].place_a, hits[k].slot_b + 7);
-                ASSERT_EQ(hits[k].place_b, hits[k].slot_a + 9);
+                ASSERT_EQ(std::pair(hits[k].a.index, hits[k].b.index), expected[k]);
+                ASSERT_EQ(hits[k].place_a, hits[k].b.index + 7);
+                ASSERT_EQ(hits[k].place_b, hits[k].a.index + 9);
+                ASSERT_EQ(hits[k].a.generation, hits[k].a.index + 1);
+                ASSERT_EQ(hits[k].b.generation, hits[k].b.index + 2);
             }
         }
     }
@@ -242,12 +304,13 @@ TEST(HitOrder, is_by_the_lower_slot_then_the_other_and_each_pair_once) {
 TEST(HitOrder, holds_where_one_body_touches_all_others) {
     constexpr std::uint32_t kGrains = 100'000;
     Dice dice(9);
-    std::vector<SlotPair> hits;
-    for (std::uint32_t grain = 1; grain <= kGrains; ++grain) hits.push_back({0, grain, 0, grain});
+    std::vector<BodyPair> hits;
+    for (std::uint32_t grain = 1; grain <= kGrains; ++grain)
+        hits.push_back({{0, 0}, {grain, 0}, 0, grain});
     for (std::size_t k = hits.size() - 1; k > 0; --k) std::swap(hits[k], hits[dice.below(k + 1)]);
     HitOrder().sort(hits, kGrains + 1);
     ASSERT_EQ(hits.size(), kGrains);
-    for (std::uint32_t k = 0; k < kGrains; ++k) ASSERT_EQ(hits[k].slot_b, k + 1);
+    for (std::uint32_t k = 0; k < kGrains; ++k) ASSERT_EQ(hits[k].b.index, k + 1);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -15,20 +14,19 @@ constexpr Scalar kUntouched = Scalar(-1);
 
 template <typename Scalar>
 struct Places {
-    RoomyVector<std::uint32_t> slot;
+    RoomyVector<BodyId> id;
     RoomyVector<Scalar> x, y;
 };
 
 template <typename Scalar>
 Places<Scalar> scattered(std::uint32_t slots, std::uint32_t count, std::mt19937& random) {
     Places<Scalar> places;
-    places.slot.resize(slots);
-    std::iota(places.slot.begin(), places.slot.end(), 0U);
-    std::shuffle(places.slot.begin(), places.slot.end(), random);
-    places.slot.resize(count);
-    for (const std::uint32_t slot : places.slot) {
-        places.x.push_back(static_cast<Scalar>(slot));
-        places.y.push_back(static_cast<Scalar>(slot) + Scalar(0.5));
+    for (std::uint32_t slot = 0; slot < slots; ++slot) places.id.push_back({slot, 0});
+    std::shuffle(places.id.begin(), places.id.end(), random);
+    places.id.resize(count);
+    for (const BodyId id : places.id) {
+        places.x.push_back(static_cast<Scalar>(id.index));
+        places.y.push_back(static_cast<Scalar>(id.index) + Scalar(0.5));
     }
     return places;
 }
@@ -37,7 +35,7 @@ template <typename Scalar>
 void expect_all_at_their_slots(SlotScatter<Scalar>& scatter, const Places<Scalar>& places,
                                std::uint32_t slots) {
     RoomyVector<Vec2<Scalar>> to(slots, Vec2<Scalar>::Constant(kUntouched<Scalar>));
-    scatter.write(places.slot, places.x, places.y, to);
+    scatter.write(places.id, places.x, places.y, to);
     std::size_t written = 0, wrong = 0;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
         if (to[slot].x() == kUntouched<Scalar>) continue;
@@ -45,7 +43,7 @@ void expect_all_at_their_slots(SlotScatter<Scalar>& scatter, const Places<Scalar
         const auto x = static_cast<Scalar>(slot);
         if (to[slot] != Vec2<Scalar>(x, x + Scalar(0.5))) ++wrong;
     }
-    EXPECT_EQ(written, places.slot.size());
+    EXPECT_EQ(written, places.id.size());
     EXPECT_EQ(wrong, 0U);
 }
 
