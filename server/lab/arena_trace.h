@@ -27,6 +27,8 @@ inline constexpr double kTraceRmsSpeedMps = 0.22 * kTraceHeightM;
 inline constexpr int kTraceTickRateHz = 60;
 // The first part of every trace is not measured.
 inline constexpr double kUnmeasuredS = 10.0;
+inline constexpr double kMaxTraceBalls = 65535;  // ids have 16 bits
+inline constexpr double kMaxTraceS = 1e6;
 inline constexpr replication::Lattice kTraceLattice{kTraceHeightM / 4096.0,
                                                     10.0 * kTraceHeightM / 4096.0};
 

@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned kMaxRepeats = 1000;
 constexpr double kRepeatS = 0.1, kQuickRepeatS = 0.02;
 
-struct Options {
+struct BenchOptions {
     std::vector<std::string> engines;  // empty: all
     std::vector<std::size_t> balls = {32, 200, 2'000, 10'000, 100'000};
     std::vector<double> packings = {0.1, 0.3, 0.6};
@@ -33,13 +33,13 @@ struct Options {
 };
 
 // What was not asked for by its option becomes less.
-void shorten(const CLI::App& command, Options& options) {
+void shorten(const CLI::App& command, BenchOptions& options) {
     if (command.count("--balls") == 0) options.balls = {32, 2'000};
     if (command.count("--packing") == 0) options.packings = {0.3};
     if (command.count("--radii") == 0) options.radii = {"equal"};
 }
 
-std::string command_of(const Options& options) {
+std::string command_of(const BenchOptions& options) {
     std::string command = "fts-lab bench";
     if (!options.engines.empty()) {
         command += fmt::format(" --engine {}", fmt::join(options.engines, ","));
@@ -51,7 +51,7 @@ std::string command_of(const Options& options) {
     return options.quick ? command + " --quick" : command;
 }
 
-BenchMatrix matrix_of(const Options& options) {
+BenchMatrix matrix_of(const BenchOptions& options) {
     BenchMatrix matrix{options.engines, options.balls, options.packings, {}, options.speeds};
     if (matrix.engines.empty()) {
         for (const EngineInfo& engine : engines()) {
@@ -65,7 +65,7 @@ BenchMatrix matrix_of(const Options& options) {
 }
 
 // Over what has most to show; the rest stays at the first of its values.
-std::string picture_of(const Options& options, const std::vector<BenchResult>& results,
+std::string picture_of(const BenchOptions& options, const std::vector<BenchResult>& results,
                        std::size_t of) {
     if (results.empty()) return {};
     const BenchScene& fixed = results.front().cell.scene;
@@ -110,7 +110,7 @@ std::vector<BenchResult> measured(const std::vector<BenchCell>& cells, const Ben
                          });
 }
 
-int execute(const Options& options) {
+int execute(const BenchOptions& options) {
     if (options.json_file == "-" && options.svg_file == "-") {
         complain("--json and --svg both go to the terminal; give one of them a file");
         return kExitUsage;
@@ -142,7 +142,7 @@ std::vector<std::string> names_of_engines() {
     return names;
 }
 
-void declare_scenes(CLI::App& command, Options& options) {
+void declare_scenes(CLI::App& command, BenchOptions& options) {
     command.add_option("--balls", options.balls, "How many, such as 32,10000")
         ->delimiter(',')
         ->check(CLI::Range(std::size_t{2}, physics::kMaxBodies))
@@ -166,7 +166,7 @@ void declare_scenes(CLI::App& command, Options& options) {
 void add_bench(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "bench", "What solvers cost over size, density and speed, beside other engines");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchOptions>();
     command->add_option("--engine", options->engines, "Only these, such as swept-double")
         ->delimiter(',')
         ->check(CLI::IsMember(names_of_engines()));

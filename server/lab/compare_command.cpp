@@ -20,9 +20,9 @@
 namespace fts::lab {
 namespace {
 
-constexpr double kMaxTicks = 1e8;
+constexpr double kMaxTicksToCompare = 1e8;
 
-struct Options {
+struct CompareOptions {
     SceneArgument scene;
     double seconds = 10.0;
     double rate_hz = 60.0;
@@ -32,12 +32,12 @@ struct Options {
     std::string json_file, svg_file;
 };
 
-struct Outputs {
+struct CompareOutputs {
     std::unique_ptr<Output> json, svg;
 };
 
-std::optional<Outputs> open_outputs(const Options& options) {
-    Outputs outputs;
+std::optional<CompareOutputs> open_outputs(const CompareOptions& options) {
+    CompareOutputs outputs;
     std::string error;
     if (options.json_file == "-" && options.svg_file == "-") {
         complain("--json and --svg both go to the terminal; give one of them a file");
@@ -55,7 +55,8 @@ std::optional<Outputs> open_outputs(const Options& options) {
 }
 
 // False when not all of it could be written; stderr has been told.
-bool write_all(Outputs& outputs, const CompareRequest& request, const Comparison& comparison) {
+bool write_all(CompareOutputs& outputs, const CompareRequest& request,
+               const Comparison& comparison) {
     if (outputs.json) outputs.json->stream() << json_of(request, comparison);
     if (outputs.svg) {
         const std::string svg = svg_of(request, comparison);
@@ -73,7 +74,7 @@ bool write_all(Outputs& outputs, const CompareRequest& request, const Comparison
     return good;
 }
 
-CompareRequest request_of(const Options& options, const physics::Scene& scene) {
+CompareRequest request_of(const CompareOptions& options, const physics::Scene& scene) {
     CompareRequest request;
     request.scene_name = options.scene.scene;
     request.scene = scene;
@@ -89,7 +90,7 @@ CompareRequest request_of(const Options& options, const physics::Scene& scene) {
     return request;
 }
 
-int execute(const Options& options) {
+int execute(const CompareOptions& options) {
     const std::optional<LoadedScene> loaded = load(options.scene);
     if (!loaded) return kExitUsage;
     if (loaded->scene.bodies.empty()) {
@@ -98,11 +99,11 @@ int execute(const Options& options) {
         return kExitUsage;
     }
     const double ticks = std::round(options.seconds * options.rate_hz);
-    if (!(ticks >= 1.0 && ticks <= kMaxTicks)) {
+    if (!(ticks >= 1.0 && ticks <= kMaxTicksToCompare)) {
         complain("--seconds times --rate must be 1 to 1e8 ticks");
         return kExitUsage;
     }
-    std::optional<Outputs> outputs = open_outputs(options);
+    std::optional<CompareOutputs> outputs = open_outputs(options);
     if (!outputs) return kExitFailure;
     listen_for_interruption();
     const CompareRequest request = request_of(options, loaded->scene);
@@ -126,7 +127,7 @@ int execute(const Options& options) {
 void add_compare(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "compare", "Every solver and scalar against exact dynamics: accuracy beside cost");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareOptions>();
     declare(*command, options->scene);
     command->add_option("--seconds", options->seconds, "Simulated time")
         ->check(CLI::Range(1e-9, 1e12))

@@ -17,15 +17,12 @@
 namespace fts::lab {
 namespace {
 
-constexpr double kMaxCount = 65535;  // ids have 16 bits
-constexpr double kMaxTraceS = 1e6;
-
-struct Options {
+struct InterpolationOptions {
     InterpolationRequest request;
     std::string json_file, svg_file, hit_svg_file;
 };
 
-int execute(const Options& options) {
+int execute(const InterpolationOptions& options) {
     std::string error;
     StudyFiles files = StudyFiles::open(options.json_file, options.svg_file, error);
     std::unique_ptr<Output> hit_svg;
@@ -71,10 +68,10 @@ void add_interpolation(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "interpolation",
         "How far what is drawn between snapshots is from what happened: every way, at 10 to 60 Hz");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InterpolationOptions>();
     InterpolationRequest& request = options->request;
     command->add_option("--count", request.count, "Balls")
-        ->check(number_from(1, kMaxCount))
+        ->check(number_from(1, kMaxTraceBalls))
         ->capture_default_str();
     command->add_option("--seed", request.seed, "Of the arena")->capture_default_str();
     command

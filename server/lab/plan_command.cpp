@@ -18,7 +18,7 @@
 namespace fts::lab {
 namespace {
 
-struct Options {
+struct PlanOptions {
     SceneArgument scene;
     std::string tolerance;
     double rate_hz = 60.0;
@@ -56,7 +56,7 @@ std::string json_of(const std::string& scene, const physics::Plan& plan, double 
     return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-int execute(const Options& options) {
+int execute(const PlanOptions& options) {
     const auto tolerance = physics::tolerance_from(options.tolerance);
     if (!tolerance) {
         complain("--tolerance is '" + options.tolerance +
@@ -96,7 +96,7 @@ int execute(const Options& options) {
 void add_plan(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "plan", "The cheapest way to advance a scene that meets a tolerance, and why");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<PlanOptions>();
     declare(*command, options->scene);
     command
         ->add_option("--tolerance", options->tolerance,

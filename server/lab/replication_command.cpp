@@ -18,10 +18,7 @@
 namespace fts::lab {
 namespace {
 
-constexpr double kMaxCount = 65535;  // ids have 16 bits
-constexpr double kMaxTraceS = 1e6;
-
-struct Options {
+struct ReplicationOptions {
     ReplicationRequest request;
     std::string json_file, svg_file;
 };
@@ -38,7 +35,7 @@ std::uint64_t wrong_of(const ReplicationStudy& study) {
     return wrong;
 }
 
-int execute(const Options& options) {
+int execute(const ReplicationOptions& options) {
     if (!divides_the_tick_rate(options.request.rate_hz)) {
         complain("--rate must be 60 over a whole number: 60, 30, 20, 15, 12, 10, ...");
         return kExitUsage;
@@ -78,10 +75,10 @@ int execute(const Options& options) {
 void add_replication(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "replication", "What a snapshot costs on the wire: every way to code it, on one arena");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ReplicationOptions>();
     ReplicationRequest& request = options->request;
     command->add_option("--count", request.count, "Balls")
-        ->check(number_from(1, kMaxCount))
+        ->check(number_from(1, kMaxTraceBalls))
         ->capture_default_str();
     command->add_option("--seed", request.seed, "Of the arena, and of what the link loses")
         ->capture_default_str();

@@ -22,9 +22,9 @@
 namespace fts::lab {
 namespace {
 
-constexpr double kMaxTicks = 1e12;
+constexpr double kMaxTicksToRun = 1e12;
 
-struct Options {
+struct RunOptions {
     SceneArgument scene;
     std::string solver = "swept";
     std::string scalar = "auto";
@@ -36,14 +36,14 @@ struct Options {
     std::optional<double> csv_rate_hz;
 };
 
-struct Outputs {
+struct RunOutputs {
     std::unique_ptr<Output> json, csv;
 
     bool take_stdout() const { return (json && json->is_stdout()) || (csv && csv->is_stdout()); }
 };
 
-std::optional<Outputs> open_outputs(const Options& options) {
-    Outputs outputs;
+std::optional<RunOutputs> open_outputs(const RunOptions& options) {
+    RunOutputs outputs;
     std::string error;
     if (options.json_file == "-" && options.csv_file == "-") {
         complain("--json and --csv both go to the terminal; give one of them a file");
@@ -61,7 +61,7 @@ std::optional<Outputs> open_outputs(const Options& options) {
 }
 
 // Sets `why` when the setting was chosen here.
-Setting setting_of(const Options& options, const physics::Scene& scene, std::string& why) {
+Setting setting_of(const RunOptions& options, const physics::Scene& scene, std::string& why) {
     Setting setting;
     setting.solver.substeps = options.substeps;
     if (options.solver == "auto") {
@@ -123,7 +123,7 @@ RunResult watched_run(const physics::Scene& scene, const RunSettings& settings,
     return run(scene, settings, observer);
 }
 
-bool write_all(Outputs& outputs, const RunReport& report) {
+bool write_all(RunOutputs& outputs, const RunReport& report) {
     std::string error;
     bool good = true;
     if (outputs.json) outputs.json->stream() << json_of(report);
@@ -136,19 +136,19 @@ bool write_all(Outputs& outputs, const RunReport& report) {
     return good;
 }
 
-int execute(const Options& options) {
+int execute(const RunOptions& options) {
     if (!physics::tolerance_from(options.tolerance)) {
         complain("--tolerance is '" + options.tolerance +
                  "'; give auto, fast, exact, or a number above 0 and below 1");
         return kExitUsage;
     }
-    if (options.seconds * options.rate_hz > kMaxTicks) {
+    if (options.seconds * options.rate_hz > kMaxTicksToRun) {
         complain("--seconds times --rate are more than 1e12 ticks; give less");
         return kExitUsage;
     }
     const std::optional<LoadedScene> loaded = load(options.scene);
     if (!loaded) return kExitUsage;
-    std::optional<Outputs> outputs = open_outputs(options);
+    std::optional<RunOutputs> outputs = open_outputs(options);
     if (!outputs) return kExitFailure;
 
     RunReport report;
@@ -176,7 +176,7 @@ int execute(const Options& options) {
 void add_run(CLI::App& app, int& exit_code) {
     CLI::App* command =
         app.add_subcommand("run", "Advance a scene and report what was conserved and what it cost");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RunOptions>();
     declare(*command, options->scene);
     command->add_option("--solver", options->solver, "seed, discrete, swept, event or auto")
         ->check(CLI::IsMember({"seed", "discrete", "swept", "event", "auto"}))
