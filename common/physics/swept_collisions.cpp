@@ -31,12 +31,13 @@ void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     move_to(a, now_s_);
     move_to(b, now_s_);
     touch(a, b, event.image);
-    if (is_touched_by_others(event)) return collide_set(event);
     const Mover<Scalar> first{space_.moved(all.position_m[a], event.image), all.velocity_mps[a],
                               all.mass_kg[a]};
     const Mover<Scalar> second{all.position_m[b], all.velocity_mps[b], all.mass_kg[b]};
-    const Scalar restitution = restitution_of(was_just_hit(a) || was_just_hit(b));
-    if (const auto hit = impact(first, second, restitution)) {
+    const auto hit = impact(first, second, restitution_of(was_just_hit(a) || was_just_hit(b)));
+    const bool looked_ahead = look_ahead(event, hit);
+    if (!looked_ahead && is_touched_by_others(event)) return collide_set(event);
+    if (hit) {
         const auto [at_a, at_b] = space_.shown(all.position_m[a], all.position_m[b], event.image);
         const Scalar distance = (first.position_m - second.position_m).norm();
         all.velocity_mps[a] = hit->velocity_1_mps;
@@ -46,12 +47,17 @@ void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
              hit->impulse_ns, at_a, at_b, first.velocity_mps, hit->velocity_1_mps,
              second.velocity_mps, hit->velocity_2_mps, first.mass_kg, second.mass_kg,
              penetration(distance, all.radius_m[a], all.radius_m[b])});
-        account(record_->contacts.back(), record_->audit);
     }
     after_event(a, {b, event.image});
     after_event(b, {a, event.image});
-    place_and_predict(a);
-    place_and_predict(b);
+    if (looked_ahead) {
+        place_and_predict(a, turn_[0].course, turn_[0].meetings);
+        place_and_predict(b, turn_[1].course, turn_[1].meetings);
+    } else {
+        place_and_predict(a);
+        place_and_predict(b);
+    }
+    if (hit) account(record_->contacts.back(), record_->audit);  // by now it is in memory
     count(1, 1);
 }
 

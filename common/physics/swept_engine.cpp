@@ -83,6 +83,7 @@ void SweptEngine<Scalar, Space>::begin_knowledge() {
     places_.reserve(slots);
     ends_.reserve(slots);
     known_.resize(slots);
+    for (Turn& turn : turn_) turn.meetings.bodies.resize(slots);
 }
 
 template <typename Scalar, typename Space>
@@ -348,6 +349,12 @@ template <typename Scalar, typename Space>
 template <bool kAfterSet>
 void SweptEngine<Scalar, Space>::predict(std::uint32_t body, const Course& course) {
     predict_meetings<kAfterSet>(body, course);
+    predict_boundary<kAfterSet>(body);
+}
+
+template <typename Scalar, typename Space>
+template <bool kAfterSet>
+void SweptEngine<Scalar, Space>::predict_boundary(std::uint32_t body) {
     if (model_->walls && !is_immovable(body)) predict_walls<kAfterSet>(body);
     if (model_->platform) predict_fall(body);
 }
@@ -441,30 +448,26 @@ void SweptEngine<Scalar, Space>::expect(const Happening& event) {
 }
 
 template <typename Scalar, typename Space>
-bool SweptEngine<Scalar, Space>::is_stale(const Happening& event) const {
-    return event.count_a != known_[event.a].count ||
-           (event.kind == EventKind::kBall && event.count_b != known_[event.b].count);
-}
-
-template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::count(std::uint32_t events, std::uint32_t cost) {
-    report_.events += events;
-    spent_ += cost;
-}
-
-template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::after_event(std::uint32_t body, const Partner& partner) {
-    ++known_[body].count;
-    known_[body].partner = partner;
-    known_[body].hit_s = now_s_;
-}
-
-template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body) {
     shorten_stretch(body);
     const Course course = course_of(body);
     place(body, course);
     predict<false>(body, course);
+}
+
+// Of one that was no stray, in an open space.
+template <typename Scalar, typename Space>
+void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body, const Course& course,
+                                                   const Meetings& meetings) {
+    place(body, course);
+    if (paths_.is_stray(body)) return predict<false>(body, course);
+    const auto meet = [&](std::uint32_t other) {
+        if (other == body || !bodies_->alive[other]) return;
+        predict_pair(std::min(body, other), std::max(body, other), Image{});
+    };
+    if (!strays_.empty()) strays_near_.for_each_near(body, swept_box(body), meet);
+    for (std::size_t i = 0; i < meetings.count; ++i) meet(meetings.bodies[i]);
+    predict_boundary<false>(body);
 }
 
 template <typename Scalar, typename Space>
@@ -485,11 +488,6 @@ Box<Scalar> SweptEngine<Scalar, Space>::swept_box(std::uint32_t body) const {
         radius + static_cast<Scalar>(kBoxSlack) * std::numeric_limits<Scalar>::epsilon() * extent;
     return {std::min(from.x(), to.x()) - reach, std::min(from.y(), to.y()) - reach,
             std::max(from.x(), to.x()) + reach, std::max(from.y(), to.y()) + reach};
-}
-
-template <typename Scalar, typename Space>
-bool SweptEngine<Scalar, Space>::was_just_hit(std::uint32_t body) const {
-    return now_s_ - known_[body].hit_s < static_cast<Scalar>(kElasticWithin) * span_s_;
 }
 
 template class SweptEngine<double, OpenSpace<double>>;

@@ -3,17 +3,21 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/physics/broadphase.h"
 #include "common/physics/event_queue.h"
+#include "common/physics/impact.h"
 #include "common/physics/simultaneous.h"
 #include "common/physics/solver.h"
+#include "common/physics/solver_swept.h"
 #include "common/physics/swept_paths.h"
 #include "common/physics/swept_space.h"
 
@@ -32,6 +36,7 @@ class SweptEngine {
     using Path = typename SweptPaths<Scalar>::Motion;
     using Course = typename SweptPaths<Scalar>::Course;
     using Touching = typename SweptPaths<Scalar>::Touching;
+    using Meetings = typename SweptPaths<Scalar>::Meetings;
     static constexpr Scalar kLongAgo = -std::numeric_limits<Scalar>::infinity();
     struct Partner {
         std::uint32_t body = kNoBody;
@@ -82,6 +87,8 @@ class SweptEngine {
     void predict(std::uint32_t body, const Course& course);
     template <bool kAfterSet>
     void predict_meetings(std::uint32_t body, const Course& course);
+    template <bool kAfterSet>
+    void predict_boundary(std::uint32_t body);
     void keep(const Hold& hold) {
         if (looks_ > 1) kept_.push_back(hold);
     }
@@ -111,15 +118,31 @@ class SweptEngine {
     }
     void predict_fall(std::uint32_t body);
     void expect(const Happening& event);
-    bool is_stale(const Happening& event) const;
-    void count(std::uint32_t events, std::uint32_t cost);
-    void after_event(std::uint32_t body, const Partner& partner);
+    bool is_stale(const Happening& event) const {
+        return event.count_a != known_[event.a].count ||
+               (event.kind == EventKind::kBall && event.count_b != known_[event.b].count);
+    }
+    void count(std::uint32_t events, std::uint32_t cost) {
+        report_.events += events;
+        spent_ += cost;
+    }
+    void after_event(std::uint32_t body, const Partner& partner) {
+        ++known_[body].count;
+        known_[body].partner = partner;
+        known_[body].hit_s = now_s_;
+    }
     void place_and_predict(std::uint32_t body);
+    void place_and_predict(std::uint32_t body, const Course& course, const Meetings& meetings);
     void place_and_predict_set();
 
     // What: swept_collisions.cpp.
     void process(const Happening& event);
     void collide_pair(const Happening& event);
+    // Of one of a pair: its course after the hit, and whom it may meet on that.
+    struct Turn {
+        Course course;
+        Meetings meetings;
+    };
     void collide_wall(const Happening& event);
     void fall(std::uint32_t body);
     void touch(std::uint32_t a, std::uint32_t b, Image image);
@@ -138,8 +161,11 @@ class SweptEngine {
     Vec separation_from(const Disc& disc, std::uint32_t other, Image image) const {
         return space_.moved(disc.position_m, image) - position_at(other, now_s_);
     }
+    std::array<Disc, 2> discs_of(const Happening& event) const;
     bool is_touched_by_others(const Happening& event);
     bool is_pair_touched(const Happening& event);
+    bool is_pair_touched_by_strays(const Happening& event);
+    bool look_ahead(const Happening& event, const std::optional<Impact<Scalar>>& hit);
     void collide_set(const Happening& event);
     bool join_set(const Happening& event);
     void gather_simultaneous();
@@ -179,7 +205,9 @@ class SweptEngine {
     std::span<const std::uint32_t> touched() const { return {touched_.data(), touched_count_}; }
     Box<Scalar> swept_box(std::uint32_t body) const;
     bool is_immovable(std::uint32_t body) const { return std::isinf(bodies_->mass_kg[body]); }
-    bool was_just_hit(std::uint32_t body) const;
+    bool was_just_hit(std::uint32_t body) const {
+        return now_s_ - known_[body].hit_s < static_cast<Scalar>(kElasticWithin) * span_s_;
+    }
     Scalar restitution_of(bool just_hit) const {
         return just_hit ? Scalar(1) : model_->restitution;
     }
@@ -214,6 +242,7 @@ class SweptEngine {
     EventQueue<Happening> queue_;
     ContactSet<Scalar> set_;
     std::vector<Happening> not_in_set_;
+    Turn turn_[2];  // of the first and of the second of a pair
     std::vector<Partner> near_;
     std::vector<Hold> kept_;
     std::ptrdiff_t kept_before_ = 0;  // the present look

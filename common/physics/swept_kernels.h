@@ -92,8 +92,19 @@ struct SweptKernels {
         return static_cast<std::size_t>(out - found);
     }
 
-    // What several vectors find is written down together, since how much each of them finds is not
-    // to be foreseen.
+    static std::uint32_t count(std::uint32_t bits) {
+#if defined(__POPCNT__)
+        return static_cast<std::uint32_t>(__builtin_popcount(bits));
+#else
+        static_assert(kMostLanes <= 8);
+        bits -= bits >> 1 & 0x55U;
+        bits = (bits & 0x33U) + (bits >> 2 & 0x33U);
+        return (bits + (bits >> 4)) & 0xfU;
+#endif
+    }
+
+    // test(path, lanes) gives which of these lanes are found. What several vectors find is written
+    // down together, since how much each of them finds is not to be foreseen.
     template <typename Test>
     static std::size_t search_window(const PathLanes& lanes, const CellWindow& window,
                                      std::uint32_t* found, Test test) {
@@ -113,7 +124,7 @@ struct SweptKernels {
         for (std::uint32_t row = window.first_y; row <= window.last_y; ++row) {
             const std::uint32_t last = cells[window.last_x + 1];
             for (std::uint32_t j = cells[window.first_x];; j += Pack::kWidth) {
-                const std::uint64_t bits = test(j) & first_lanes(last - j);
+                const std::uint64_t bits = test(j, first_lanes(last - j));
                 all |= bits << (kMostLanes * vectors);
                 starts[vectors] = j;
                 if (++vectors == kTogether) [[unlikely]]
@@ -129,11 +140,31 @@ struct SweptKernels {
 
     static std::size_t find_meeting(const PathLanes& lanes, const CellWindow& window,
                                     const PathSearch& search, std::uint32_t* found) {
+        return find_meeting_in(lanes, window, search, found,
+                               [](std::uint32_t, Vector, std::uint32_t) {});
+    }
+
+    static std::size_t find_meeting_and_close(const PathLanes& lanes, const CellWindow& window,
+                                              const PathSearch& search, std::uint32_t* found,
+                                              std::uint32_t& close) {
+        const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
+        const Vector limit = Pack::all(search.close_limit);
+        const auto note = [&](std::uint32_t j, Vector squared, std::uint32_t among) {
+            const Vector reach = squared_reach(lanes, j, radius, limit);
+            close += count(Pack::at_most(squared, reach) & among);
+        };
+        return find_meeting_in(lanes, window, search, found, note);
+    }
+
+    // note(path, squares of the distances at that time, lanes)
+    template <typename Note>
+    static std::size_t find_meeting_in(const PathLanes& lanes, const CellWindow& window,
+                                       const PathSearch& search, std::uint32_t* found, Note note) {
         const Vector at_x = Pack::all(search.x), at_y = Pack::all(search.y);
         const Vector to_x = Pack::all(search.ahead_x), to_y = Pack::all(search.ahead_y);
         const Vector half_time = Pack::all(search.half_time), limit = Pack::all(search.limit);
         const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
-        return search_window(lanes, window, found, [&](std::uint32_t j) {
+        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
             const Vector x = Pack::load(lanes.x + j), y = Pack::load(lanes.y + j);
             const Vector ahead_x = Pack::load(lanes.ahead_x + j);
             const Vector ahead_y = Pack::load(lanes.ahead_y + j);
@@ -143,15 +174,16 @@ struct SweptKernels {
             const Vector dy = Pack::sub(Pack::add(y, way_y), at_y);
             const Vector ex = Pack::sub(Pack::sub(ahead_x, way_x), to_x);
             const Vector ey = Pack::sub(Pack::sub(ahead_y, way_y), to_y);
+            note(j, Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy)), among);
             const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
-            return Pack::at_most(sum, squared_reach(lanes, j, radius, limit));
+            return Pack::at_most(sum, squared_reach(lanes, j, radius, limit)) & among;
         });
     }
 
     static std::size_t find_touching(const PathLanes& lanes, const CellWindow& window,
                                      const TouchSearch& search, std::uint32_t* found) {
         const Vector half_time = Pack::all(search.half_time);
-        return search_window(lanes, window, found, [&](std::uint32_t j) {
+        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
             const Vector start_x = Pack::load(lanes.x + j), start_y = Pack::load(lanes.y + j);
             const Vector way_x = Pack::sub(Pack::load(lanes.ahead_x + j), start_x);
             const Vector way_y = Pack::sub(Pack::load(lanes.ahead_y + j), start_y);
@@ -164,11 +196,12 @@ struct SweptKernels {
                 return Pack::at_most(Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy)),
                                      squared_reach(lanes, j, radius, Pack::all(search.limit[k])));
             };
-            return near(0) | near(1);
+            return (near(0) | near(1)) & among;
         });
     }
 
-    static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_touching};
+    static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_meeting_and_close,
+                                           find_touching};
 };
 
 }  // namespace fts::physics

@@ -67,6 +67,7 @@ struct PathSearch {
     float radius;            // not used when all are equal
     float half_time;
     float limit;
+    float close_limit;  // as `limit`, of the distance at that time
 };
 
 // Who touches one of two discs at that time. A limit is the square of a distance when all radii
@@ -86,6 +87,9 @@ struct LaneKernels {
     // These write the indices of the paths they find, which may be all, and return how many.
     std::size_t (*find_meeting)(const PathLanes&, const CellWindow&, const PathSearch&,
                                 std::uint32_t* found);
+    // The same, and adds to `close` how many are within the close limit.
+    std::size_t (*find_meeting_and_close)(const PathLanes&, const CellWindow&, const PathSearch&,
+                                          std::uint32_t* found, std::uint32_t& close);
     std::size_t (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&,
                                  std::uint32_t* found);
 };

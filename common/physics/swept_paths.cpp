@@ -16,7 +16,7 @@ constexpr std::uint32_t kSpansPerFit = 64;
 
 // Who moves more than so many times what most do is a stray.
 constexpr double kMost = 0.9;
-constexpr double kWaysOfMost = 2.3;
+constexpr double kWaysOfMost = 2.6;
 // A span may be so much shorter than what the grid was fitted to before that is wasteful.
 constexpr double kShortestSpan = 0.5;
 constexpr double kLongestSpan = 1.05;
@@ -311,6 +311,30 @@ PathLanes SweptPaths<Scalar>::lanes() const {
             width_,          height_,        static_cast<std::uint32_t>(body_.size())};
 }
 
+// Who asks may be large, or far from the grid, and its place in it then is coarse.
+template <typename Scalar>
+auto SweptPaths<Scalar>::close_to(float x, float y, float radius, Scalar tolerance_m) const
+    -> Close {
+    const float reach = radius + largest_radius_;
+    const float coarse = kPlaceUnits * kFloatEpsilon * (std::max(std::abs(x), std::abs(y)) + reach);
+    const float more = static_cast<float>(tolerance_m * per_m_) + kNearBlurs * blur_ + coarse;
+    const float slack = slack_ + (2.0F * reach + more) * more;
+    return {more, equal_radii_ ? reach * reach + slack : slack};
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::note_meetings(const Course& course, Scalar tolerance_m,
+                                       Meetings& meetings) {
+    const Close close = close_to(course.x, course.y, course.radius, tolerance_m);
+    PathSearch search = {};
+    const CellWindow cells = prepare(course, close.more, search);
+    search.close_limit = close.limit;
+    meetings.close = 0;
+    meetings.count =
+        kernels_->find_meeting_and_close(lanes_, cells, search, near_.data(), meetings.close);
+    for (std::size_t i = 0; i < meetings.count; ++i) meetings.bodies[i] = body_[near_[i]];
+}
+
 template <typename Scalar>
 CellWindow SweptPaths<Scalar>::prepare(const Touching& first, const Touching& second,
                                        Scalar since_s, TouchSearch& search) const {
@@ -322,19 +346,14 @@ CellWindow SweptPaths<Scalar>::prepare(const Touching& first, const Touching& se
         const bool asked = disc.radius_m > Scalar(0);
         const float x = cells_x(disc.position_m.x()), y = cells_y(disc.position_m.y());
         const auto radius = static_cast<float>(disc.radius_m * per_m_);
-        const float reach = radius + largest_radius_;
-        // A stray may be large, or far from the grid, and its place in it then is coarse.
-        const float coarse =
-            kPlaceUnits * kFloatEpsilon * (std::max(std::abs(x), std::abs(y)) + reach);
-        const float more =
-            static_cast<float>(disc.tolerance_m * per_m_) + kNearBlurs * blur_ + coarse;
+        const Close close = close_to(x, y, radius, disc.tolerance_m);
         search.x[k] = x;
         search.y[k] = y;
         search.radius[k] = radius;
-        const float slack = slack_ + (2.0F * reach + more) * more;
-        search.limit[k] = !asked ? -kInfinite : equal_radii_ ? reach * reach + slack : slack;
+        search.limit[k] = asked ? close.limit : -kInfinite;
         if (!asked) continue;
-        const float near = reach + longest_way_ + more + kNearBlurs * blur_;
+        const float near =
+            radius + largest_radius_ + longest_way_ + close.more + kNearBlurs * blur_;
         min_x = std::min(min_x, x - near);
         min_y = std::min(min_y, y - near);
         max_x = std::max(max_x, x + near);

@@ -73,6 +73,14 @@ class SweptPaths {
     // a one; itself among them.
     template <typename Visit>
     void for_each_meeting(const Course& course, Visit&& visit);
+    // The same, written down, and of how many it is so close now that they may touch it: who is
+    // within `tolerance_m` does. Expects room for all.
+    struct Meetings {
+        std::vector<std::uint32_t> bodies;  // the first of them
+        std::size_t count = 0;
+        std::uint32_t close = 0;
+    };
+    void note_meetings(const Course& course, Scalar tolerance_m, Meetings& meetings);
     // The same for a stray that stays within the box.
     template <typename Visit>
     void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
@@ -108,7 +116,14 @@ class SweptPaths {
     [[gnu::always_inline]] CellWindow window(float min_x, float min_y, float max_x,
                                              float max_y) const;
     PathLanes lanes() const;
-    [[gnu::always_inline]] CellWindow prepare(const Course& course, PathSearch& search) const;
+    // Who is close enough to touch a disc: the square of the distance is at most `limit`; by `more`
+    // he may be further away than the sum of radii.
+    struct Close {
+        float more, limit;
+    };
+    Close close_to(float x, float y, float radius, Scalar tolerance_m) const;
+    [[gnu::always_inline]] CellWindow prepare(const Course& course, float more,
+                                              PathSearch& search) const;
     CellWindow prepare(const Touching& first, const Touching& second, Scalar since_s,
                        TouchSearch& search) const;
 
@@ -170,11 +185,12 @@ inline CellWindow SweptPaths<Scalar>::window(float min_x, float min_y, float max
 }
 
 template <typename Scalar>
-inline CellWindow SweptPaths<Scalar>::prepare(const Course& course, PathSearch& search) const {
+inline CellWindow SweptPaths<Scalar>::prepare(const Course& course, float more,
+                                              PathSearch& search) const {
     const auto [x, y, way_x, way_y, radius, half] = course;
     const float left = 0.5F - half;
-    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_};
-    const float near = radius + largest_radius_ + longest_way_ + kNearBlurs * blur_;
+    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_, 0.0F};
+    const float near = radius + largest_radius_ + longest_way_ + more + kNearBlurs * blur_;
     const float to_x = x + left * way_x, to_y = y + left * way_y;
     return window(std::min(x, to_x) - near, std::min(y, to_y) - near, std::max(x, to_x) + near,
                   std::max(y, to_y) + near);
@@ -222,7 +238,7 @@ template <typename Scalar>
 template <typename Visit>
 void SweptPaths<Scalar>::for_each_meeting(const Course& course, Visit&& visit) {
     PathSearch search = {};
-    const CellWindow cells = prepare(course, search);
+    const CellWindow cells = prepare(course, 0.0F, search);
     const std::size_t count = kernels_->find_meeting(lanes_, cells, search, near_.data());
     for (std::size_t i = 0; i < count; ++i) visit(body_[near_[i]]);
 }

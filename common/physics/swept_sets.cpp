@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -107,12 +108,19 @@ bool SweptEngine<Scalar, Space>::is_touched_by_others(const Happening& event) {
     return found || is_pair_touched(event);
 }
 
-// One look at the grid for both, since they lie side by side.
+// The two of a meeting, side by side.
+template <typename Scalar, typename Space>
+auto SweptEngine<Scalar, Space>::discs_of(const Happening& event) const -> std::array<Disc, 2> {
+    const Vec at_a = position_at(event.a, now_s_);
+    const Vec at_b = at_a - separation_now(event.a, event.b, event.image);
+    return {disc_at(event.a, at_a), disc_at(event.b, at_b)};
+}
+
+// One look at the grid for both.
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
-    const Vec at_a = position_at(event.a, now_s_);
-    const Disc a = disc_at(event.a, at_a);
-    const Disc b = disc_at(event.b, at_a - separation_now(event.a, event.b, event.image));
+    const std::array<Disc, 2> discs = discs_of(event);
+    const Disc &a = discs[0], &b = discs[1];
     const bool a_moves = !is_immovable(event.a), b_moves = !is_immovable(event.b);
     const Box<Scalar> box = !a_moves   ? reach_of(b)
                             : !b_moves ? reach_of(a)
@@ -130,6 +138,48 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
         if (!strays_.empty()) strays_near_.for_each_near(event.a, moved, look);
     });
     return found;
+}
+
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::is_pair_touched_by_strays(const Happening& event) {
+    const std::array<Disc, 2> discs = discs_of(event);
+    const Box<Scalar> box = united(reach_of(discs[0]), reach_of(discs[1]));
+    bool found = false;
+    strays_near_.for_each_near(event.a, box, [&](std::uint32_t other) {
+        if (!bodies_->alive[other]) return;
+        for (const Disc& disc : discs) {
+            found |= touches(disc, other, separation_from(disc, other, {}));
+        }
+    });
+    return found;
+}
+
+// Whom the two may meet after the hit, noted in turn_ in the same pass that sees who is close to
+// them now: nearly always they are alone. False where they may not be, or are at a wall, or where
+// others are not all among the paths; then both is to be looked for as ever.
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::look_ahead(const Happening& event,
+                                            const std::optional<Impact<Scalar>>& hit) {
+    if constexpr (Space::kHasImages) return false;
+    if (is_immovable(event.a) || is_immovable(event.b)) return false;
+    if (!strays_.empty() && (paths_.is_stray(event.a) || paths_.is_stray(event.b) ||
+                             is_pair_touched_by_strays(event))) {
+        return false;
+    }
+    for (const int k : {0, 1}) {
+        const std::uint32_t body = k == 0 ? event.a : event.b;
+        bool at_wall = false;
+        for_each_touched_wall(body, [&](std::uint32_t) { at_wall = true; });
+        if (at_wall) return false;
+        const Scalar reach = bodies_->radius_m[body] + paths_.largest_radius_m();
+        Path path = path_of(body);
+        if (hit) path.velocity_mps = k == 0 ? hit->velocity_1_mps : hit->velocity_2_mps;
+        turn_[k].course = paths_.course_of(path);
+        const Scalar tolerance = touch_tolerance_m(reach, extent_m(body));
+        paths_.note_meetings(turn_[k].course, tolerance, turn_[k].meetings);
+        if (turn_[k].meetings.close != 2) return false;  // more than the two
+    }
+    return true;
 }
 
 // Those of which something happened to one, or that were kept twice, are of no use any more.
@@ -212,6 +262,14 @@ void SweptEngine<Scalar, Space>::add_to_set(std::uint32_t body) {
     set_.add(body, bodies_->velocity_mps[body], bodies_->mass_kg[body], was_just_hit(body));
 }
 
+template bool SweptEngine<double, OpenSpace<double>>::look_ahead(
+    const Happening&, const std::optional<Impact<double>>&);
+template bool SweptEngine<float, OpenSpace<float>>::look_ahead(const Happening&,
+                                                               const std::optional<Impact<float>>&);
+template bool SweptEngine<double, TorusSpace<double>>::look_ahead(
+    const Happening&, const std::optional<Impact<double>>&);
+template bool SweptEngine<float, TorusSpace<float>>::look_ahead(
+    const Happening&, const std::optional<Impact<float>>&);
 template bool SweptEngine<double, OpenSpace<double>>::is_touched_by_others(const Happening&);
 template bool SweptEngine<float, OpenSpace<float>>::is_touched_by_others(const Happening&);
 template bool SweptEngine<double, TorusSpace<double>>::is_touched_by_others(const Happening&);

@@ -133,11 +133,16 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
             all.position_m[body] += (all.velocity_mps[body] - turned) * now_s;
             all.velocity_mps[body] = turned;
             const auto course = paths.course_of({at(body), turned, all.radius_m[body], now_s});
+            SweptPaths<double>::Meetings noted = {std::vector<std::uint32_t>(all.slots())};
+            if (!paths.is_stray(body)) paths.note_meetings(course, 0.0, noted);
             if (!paths.follow(body, course)) continue;
             std::set<std::uint32_t> meeting, touching;
             paths.for_each_meeting(course, [&](std::uint32_t other) { meeting.insert(other); });
             paths.for_each_touching({at(body), all.radius_m[body], 0.0}, {}, now_s,
                                     [&](std::uint32_t other) { touching.insert(other); });
+            noted.bodies.resize(noted.count);
+            const std::set<std::uint32_t> noted_bodies(noted.bodies.begin(), noted.bodies.end());
+            std::uint32_t touching_now = 1;  // itself
             for (const BodyId other_id : all.ids) {
                 const std::uint32_t other = other_id.index;
                 if (other == body || paths.is_stray(other)) continue;
@@ -147,13 +152,16 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
                     time_until_contact<double>(apart, turned - all.velocity_mps[other], reach);
                 if (now_s + wait_s <= 1.0) {
                     EXPECT_TRUE(meeting.contains(other));
+                    EXPECT_TRUE(noted_bodies.contains(other));
                     ++meetings;
                 }
                 if (apart.norm() <= reach) {
                     EXPECT_TRUE(touching.contains(other));
                     ++touches;
+                    ++touching_now;
                 }
             }
+            EXPECT_GE(noted.close, touching_now);
         }
     }
     EXPECT_GT(meetings, 500U);
@@ -273,10 +281,22 @@ Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
         for (std::size_t i = 0; i < count; ++i) all.push_back({0, met[i]});
     };
     const CellWindow window = {2, 0, 6, 3}, everywhere = {0, 0, lanes.width - 1, lanes.height - 1};
-    note(kernels.find_meeting(lanes, window, {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F},
-                              met.data()));
-    note(kernels.find_meeting(lanes, everywhere, {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 9.0F},
-                              met.data()));
+    const PathSearch few = {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F, 2.0F};
+    PathSearch many = few;
+    many.limit = 9.0F;
+    note(kernels.find_meeting(lanes, window, few, met.data()));
+    note(kernels.find_meeting(lanes, everywhere, many, met.data()));
+    for (const PathSearch& search_close : {few, many}) {
+        std::uint32_t close = 0;
+        note(kernels.find_meeting_and_close(lanes, window, search_close, met.data(), close));
+        const TouchSearch one = {{few.x, 0.0F},
+                                 {few.y, 0.0F},
+                                 {few.radius, 0.0F},
+                                 {few.close_limit, -1.0F},
+                                 few.half_time};
+        EXPECT_EQ(close, kernels.find_touching(lanes, window, one, met.data()));
+        EXPECT_GT(close, 0U);
+    }
     note(kernels.find_touching(
         lanes, window, {{4.1F, 4.6F}, {1.2F, 1.5F}, {0.1F, 0.2F}, {0.3F, 0.2F}, 0.3F}, met.data()));
     std::sort(all.begin(), all.end());
