@@ -30,6 +30,9 @@ struct Discs {
     Scalar largest_radius_m = Scalar(0);
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(x_m.size()); }
+    Scalar radius_of(std::uint32_t i) const {
+        return radius_m.empty() ? largest_radius_m : radius_m[i];
+    }
 };
 
 struct NearPairs {

@@ -42,9 +42,7 @@ class CrowdCopy {
     std::uint32_t count() const { return static_cast<std::uint32_t>(id.size()); }
     std::uint32_t slots() const { return static_cast<std::uint32_t>(place_.size()); }
     std::uint32_t place_of(std::uint32_t slot) const { return place_[slot]; }
-    Scalar radius_of(std::uint32_t place) const {
-        return radius_m.empty() ? largest_radius_m : radius_m[place];
-    }
+    Scalar radius_of(std::uint32_t place) const { return discs().radius_of(place); }
     Discs<Scalar> discs() const { return {x_m, y_m, radius_m, largest_radius_m}; }
 
   private:

@@ -50,7 +50,7 @@ void NearList<Scalar>::all_moved(Scalar farthest_m) {
     last_move_m_ = farthest_m;
     farthest_m_ += farthest_m + worst_shift_m_;
     slop_m_ = slop_for(farthest_m_);
-    travelled_m_ += std::min(farthest_m, usual_way_m_) + slop_m_;
+    travelled_m_ += way_of_nearly_all_m() + slop_m_;
 }
 
 template <typename Scalar>
@@ -61,7 +61,7 @@ Scalar NearList<Scalar>::slop_for(Scalar farthest_m) const {
 // If discs move as in the look before.
 template <typename Scalar>
 bool NearList<Scalar>::is_expected_to_hold() const {
-    return holds() && still_holds_after(std::min(last_move_m_, usual_way_m_) + slop_m_);
+    return holds() && still_holds_after(way_of_nearly_all_m() + slop_m_);
 }
 
 template <typename Scalar>
@@ -83,7 +83,7 @@ Scalar NearList<Scalar>::usual_way_now() const {
 
 template <typename Scalar>
 Scalar NearList<Scalar>::margin_for(Scalar reach_m) const {
-    const Scalar a_look = Scalar(2) * (std::min(last_move_m_, usual_way_m_) + slop_m_);
+    const Scalar a_look = Scalar(2) * (way_of_nearly_all_m() + slop_m_);
     const Scalar widest = static_cast<Scalar>(kWidestMargin) * reach_m;
     const Scalar margin = std::min(static_cast<Scalar>(kLooks) * a_look, widest);
     if (!(margin > a_look)) return Scalar(0);
@@ -99,7 +99,7 @@ void NearList<Scalar>::make(const Discs<Scalar>& discs) {
     most_astray_ = box_ ? 0 : std::min<std::size_t>(discs.count() / kDiscsToOneAstray, kMostAstray);
     constexpr Scalar kAnyWay = std::numeric_limits<Scalar>::infinity();
     usual_way_m_ = most_astray_ > 0 ? usual_way_now() : kAnyWay;
-    allowance_m_ = most_astray_ > 0 ? static_cast<Scalar>(kLooksAside) * usual_way_m_ : kAnyWay;
+    allowance_m_ = static_cast<Scalar>(kLooksAside) * usual_way_m_;
     margin_m_ = margin_for(Scalar(2) * discs.largest_radius_m);
     travelled_m_ = slop_m_;
     worst_shift_m_ = Scalar(0);
@@ -152,33 +152,32 @@ void NearList<Scalar>::pick(const Discs<Scalar>& discs, std::size_t part,
     const std::size_t count = kernels_->pick(test, picked_.data());
     for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t a = test.a[picked_[k]], b = test.b[picked_[k]];
-        const Scalar reach = equal ? sum_of_equal : discs.radius_m[a] + discs.radius_m[b];
-        const Vec2<Scalar> line =
-            nearest_image<Scalar>({discs.x_m[a] - discs.x_m[b], discs.y_m[a] - discs.y_m[b]}, box_);
-        if (line.squaredNorm() < reach * reach) pairs.push_back({a, b});
+        if (overlap(discs, a, b)) pairs.push_back({a, b});
     }
+}
+
+template <typename Scalar>
+bool NearList<Scalar>::overlap(const Discs<Scalar>& discs, std::uint32_t a, std::uint32_t b) const {
+    const Scalar reach = discs.radius_of(a) + discs.radius_of(b);
+    const Vec2<Scalar> line =
+        nearest_image<Scalar>({discs.x_m[a] - discs.x_m[b], discs.y_m[a] - discs.y_m[b]}, box_);
+    return line.squaredNorm() < reach * reach;
 }
 
 template <typename Scalar>
 void NearList<Scalar>::find_those_astray(const Discs<Scalar>& discs,
                                          std::vector<DiscPair>& pairs) const {
     if (!all_astray_are_known()) return;  // then the list holds for them too
-    const bool equal = discs.radius_m.empty();
-    const auto radius_of = [&](std::uint32_t i) {
-        return equal ? discs.largest_radius_m : discs.radius_m[i];
-    };
     const auto compare = [&](std::uint32_t a, std::uint32_t b) {
-        const Scalar x_m = discs.x_m[a] - discs.x_m[b], y_m = discs.y_m[a] - discs.y_m[b];
-        const Scalar reach = radius_of(a) + radius_of(b);
-        if (x_m * x_m + y_m * y_m < reach * reach) pairs.push_back({a, b});
+        if (overlap(discs, a, b)) pairs.push_back({a, b});
     };
     for (std::size_t k = 0; k < astray_.size(); ++k) {
         const std::uint32_t i = astray_[k];
         const Vec2<Scalar> place_m(discs.x_m[i], discs.y_m[i]);
-        const Vec2<Scalar> around_m = Vec2<Scalar>::Constant(radius_of(i) + discs.largest_radius_m +
-                                                             longest_way_m() + slop_m_);
+        const Vec2<Scalar> around_m = Vec2<Scalar>::Constant(
+            discs.radius_of(i) + discs.largest_radius_m + longest_way_m() + slop_m_);
         grid_.visit({place_m - around_m, place_m + around_m}, [&](std::uint32_t other) {
-            if (!(shift_m_[other] > allowance_m_)) compare(i, other);
+            if (!is_astray(other)) compare(i, other);
         });
         for (std::size_t j = 0; j < k; ++j) compare(i, astray_[j]);
     }

@@ -41,10 +41,10 @@ class NearList {
 
     // Between looks, this disc by other hands.
     void moved(std::uint32_t disc, Scalar by_m) {
-        const bool was_astray = shift_m_[disc] > allowance_m_;
+        const bool was_astray = is_astray(disc);
         shift_m_[disc] += by_m + slop_m_;
         worst_shift_m_ = shift_m_[disc] > worst_shift_m_ ? shift_m_[disc] : worst_shift_m_;
-        if (shift_m_[disc] > allowance_m_ && !was_astray) goes_astray(disc);
+        if (is_astray(disc) && !was_astray) goes_astray(disc);
     }
     // While the list holds no disc is further than this from where it was when it was made, but for
     // those astray.
@@ -86,13 +86,19 @@ class NearList {
             all_astray_are_known() && allowance_m_ < worst_shift_m_ ? allowance_m_ : worst_shift_m_;
         return Scalar(2) * (travelled_m_ + way_m + shift_m) <= margin_m_;
     }
+    bool is_astray(std::uint32_t disc) const { return shift_m_[disc] > allowance_m_; }
     void goes_astray(std::uint32_t disc);
+    // In the last look.
+    Scalar way_of_nearly_all_m() const {
+        return last_move_m_ < usual_way_m_ ? last_move_m_ : usual_way_m_;
+    }
     Scalar usual_way_now() const;
     Scalar slop_for(Scalar farthest_m) const;
     void make(const Discs<Scalar>& discs);
     void note_ends(std::uint32_t discs);
     Scalar margin_for(Scalar reach_m) const;
     void pick(const Discs<Scalar>& discs, std::size_t part, std::vector<DiscPair>& pairs);
+    bool overlap(const Discs<Scalar>& discs, std::uint32_t a, std::uint32_t b) const;
     void find_those_astray(const Discs<Scalar>& discs, std::vector<DiscPair>& pairs) const;
 
     const CrowdKernels<Scalar>* kernels_;

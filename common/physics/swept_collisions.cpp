@@ -50,13 +50,8 @@ void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     }
     after_event(a, {b, event.image});
     after_event(b, {a, event.image});
-    if (looked_ahead) {
-        place_and_predict(a, turn_[0].course, turn_[0].meetings);
-        place_and_predict(b, turn_[1].course, turn_[1].meetings);
-    } else {
-        place_and_predict(a);
-        place_and_predict(b);
-    }
+    place_and_predict(a, looked_ahead ? &turn_[0] : nullptr);
+    place_and_predict(b, looked_ahead ? &turn_[1] : nullptr);
     if (hit) account(record_->contacts.back(), record_->audit);  // by now it is in memory
     count(1, 1);
 }

@@ -347,21 +347,17 @@ void SweptEngine<Scalar, Space>::predict_strays() {
 
 template <typename Scalar, typename Space>
 template <bool kAfterSet>
-void SweptEngine<Scalar, Space>::predict(std::uint32_t body, const Course& course) {
-    predict_meetings<kAfterSet>(body, course);
-    predict_boundary<kAfterSet>(body);
-}
-
-template <typename Scalar, typename Space>
-template <bool kAfterSet>
-void SweptEngine<Scalar, Space>::predict_boundary(std::uint32_t body) {
+void SweptEngine<Scalar, Space>::predict(std::uint32_t body, const Course& course,
+                                         const Meetings* seen) {
+    predict_meetings<kAfterSet>(body, course, seen);
     if (model_->walls && !is_immovable(body)) predict_walls<kAfterSet>(body);
     if (model_->platform) predict_fall(body);
 }
 
 template <typename Scalar, typename Space>
 template <bool kAfterSet>
-void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body, const Course& course) {
+void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body, const Course& course,
+                                                  const Meetings* seen) {
     const bool is_stray = paths_.is_stray(body), any_strays = !strays_.empty();
     const Box<Scalar> box = Space::kHasImages || any_strays ? swept_box(body) : Box<Scalar>{};
     space_.for_each_image(box, [&](const Box<Scalar>& moved_box, Image image) {
@@ -380,6 +376,8 @@ void SweptEngine<Scalar, Space>::predict_meetings(std::uint32_t body, const Cour
             Path moved = path_of(body);
             moved.position_m = space_.moved(moved.position_m, image);
             paths_.for_each_meeting(paths_.course_of(moved), meet);
+        } else if (seen != nullptr) {
+            for (std::size_t i = 0; i < seen->count; ++i) meet(seen->bodies[i]);
         } else {
             paths_.for_each_meeting(course, meet);
         }
@@ -448,26 +446,11 @@ void SweptEngine<Scalar, Space>::expect(const Happening& event) {
 }
 
 template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body) {
+void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body, const Turn* turn) {
     shorten_stretch(body);
-    const Course course = course_of(body);
+    const Course course = turn != nullptr ? turn->course : course_of(body);
     place(body, course);
-    predict<false>(body, course);
-}
-
-// Of one that was no stray, in an open space.
-template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body, const Course& course,
-                                                   const Meetings& meetings) {
-    place(body, course);
-    if (paths_.is_stray(body)) return predict<false>(body, course);
-    const auto meet = [&](std::uint32_t other) {
-        if (other == body || !bodies_->alive[other]) return;
-        predict_pair(std::min(body, other), std::max(body, other), Image{});
-    };
-    if (!strays_.empty()) strays_near_.for_each_near(body, swept_box(body), meet);
-    for (std::size_t i = 0; i < meetings.count; ++i) meet(meetings.bodies[i]);
-    predict_boundary<false>(body);
+    predict<false>(body, course, turn != nullptr ? &turn->meetings : nullptr);
 }
 
 template <typename Scalar, typename Space>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -84,11 +83,10 @@ class SweptEngine {
     void predict_images();
     void predict_strays();
     template <bool kAfterSet>
-    void predict(std::uint32_t body, const Course& course);
+    void predict(std::uint32_t body, const Course& course, const Meetings* seen = nullptr);
+    // Of those among the paths, who was seen, or, without that, who is found.
     template <bool kAfterSet>
-    void predict_meetings(std::uint32_t body, const Course& course);
-    template <bool kAfterSet>
-    void predict_boundary(std::uint32_t body);
+    void predict_meetings(std::uint32_t body, const Course& course, const Meetings* seen = nullptr);
     void keep(const Hold& hold) {
         if (looks_ > 1) kept_.push_back(hold);
     }
@@ -131,18 +129,18 @@ class SweptEngine {
         known_[body].partner = partner;
         known_[body].hit_s = now_s_;
     }
-    void place_and_predict(std::uint32_t body);
-    void place_and_predict(std::uint32_t body, const Course& course, const Meetings& meetings);
+    // Of one of a pair: its course after the hit, and whom it may meet on that.
+    struct Turn {
+        Course course{};
+        Meetings meetings;
+    };
+    // As it is now; or as it was seen to turn.
+    void place_and_predict(std::uint32_t body, const Turn* turn = nullptr);
     void place_and_predict_set();
 
     // What: swept_collisions.cpp.
     void process(const Happening& event);
     void collide_pair(const Happening& event);
-    // Of one of a pair: its course after the hit, and whom it may meet on that.
-    struct Turn {
-        Course course;
-        Meetings meetings;
-    };
     void collide_wall(const Happening& event);
     void fall(std::uint32_t body);
     void touch(std::uint32_t a, std::uint32_t b, Image image);
@@ -161,10 +159,9 @@ class SweptEngine {
     Vec separation_from(const Disc& disc, std::uint32_t other, Image image) const {
         return space_.moved(disc.position_m, image) - position_at(other, now_s_);
     }
-    std::array<Disc, 2> discs_of(const Happening& event) const;
     bool is_touched_by_others(const Happening& event);
-    bool is_pair_touched(const Happening& event);
-    bool is_pair_touched_by_strays(const Happening& event);
+    enum class Among : std::uint8_t { kAll, kStrays };
+    bool is_pair_touched(const Happening& event, Among others);
     bool look_ahead(const Happening& event, const std::optional<Impact<Scalar>>& hit);
     void collide_set(const Happening& event);
     bool join_set(const Happening& event);
@@ -174,6 +171,7 @@ class SweptEngine {
     void for_each_touching(std::uint32_t body, Visit&& visit);
     template <typename Visit>
     void for_each_touched_wall(std::uint32_t body, Visit&& visit) const;
+    bool touches_wall(std::uint32_t body) const;
     // The largest length that goes into where a body is within the span.
     [[gnu::always_inline]] Scalar extent_m(std::uint32_t body) const {
         const Vec &position = bodies_->position_m[body], &velocity = bodies_->velocity_mps[body];

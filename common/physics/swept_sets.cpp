@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -92,6 +91,13 @@ void SweptEngine<Scalar, Space>::for_each_touched_wall(std::uint32_t body, Visit
     }
 }
 
+template <typename Scalar, typename Space>
+bool SweptEngine<Scalar, Space>::touches_wall(std::uint32_t body) const {
+    bool found = false;
+    for_each_touched_wall(body, [&](std::uint32_t) { found = true; });
+    return found;
+}
+
 // Whether anything but the two of this event touches either of them. What does not move does not
 // pass anything on.
 template <typename Scalar, typename Space>
@@ -102,25 +108,16 @@ bool SweptEngine<Scalar, Space>::is_touched_by_others(const Happening& event) {
         for_each_touching(event.a, [&](std::uint32_t, const Vec&) { found = true; });
         return found;
     }
-    const auto note_wall = [&](std::uint32_t) { found = true; };
-    if (!is_immovable(event.a)) for_each_touched_wall(event.a, note_wall);
-    if (!is_immovable(event.b)) for_each_touched_wall(event.b, note_wall);
-    return found || is_pair_touched(event);
+    return (!is_immovable(event.a) && touches_wall(event.a)) ||
+           (!is_immovable(event.b) && touches_wall(event.b)) || is_pair_touched(event, Among::kAll);
 }
 
-// The two of a meeting, side by side.
+// One look at the grid for both, since they lie side by side.
 template <typename Scalar, typename Space>
-auto SweptEngine<Scalar, Space>::discs_of(const Happening& event) const -> std::array<Disc, 2> {
+bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event, Among others) {
     const Vec at_a = position_at(event.a, now_s_);
-    const Vec at_b = at_a - separation_now(event.a, event.b, event.image);
-    return {disc_at(event.a, at_a), disc_at(event.b, at_b)};
-}
-
-// One look at the grid for both.
-template <typename Scalar, typename Space>
-bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
-    const std::array<Disc, 2> discs = discs_of(event);
-    const Disc &a = discs[0], &b = discs[1];
+    const Disc a = disc_at(event.a, at_a);
+    const Disc b = disc_at(event.b, at_a - separation_now(event.a, event.b, event.image));
     const bool a_moves = !is_immovable(event.a), b_moves = !is_immovable(event.b);
     const Box<Scalar> box = !a_moves   ? reach_of(b)
                             : !b_moves ? reach_of(a)
@@ -132,24 +129,12 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event) {
             found = (a_moves && touches(a, other, separation_from(a, other, image))) ||
                     (b_moves && touches(b, other, separation_from(b, other, image)));
         };
-        const Touching near_a = a_moves ? touching(a, image) : Touching{};
-        const Touching near_b = b_moves ? touching(b, image) : Touching{};
-        paths_.for_each_touching(near_a, near_b, now_s_ - from_s_, look);
-        if (!strays_.empty()) strays_near_.for_each_near(event.a, moved, look);
-    });
-    return found;
-}
-
-template <typename Scalar, typename Space>
-bool SweptEngine<Scalar, Space>::is_pair_touched_by_strays(const Happening& event) {
-    const std::array<Disc, 2> discs = discs_of(event);
-    const Box<Scalar> box = united(reach_of(discs[0]), reach_of(discs[1]));
-    bool found = false;
-    strays_near_.for_each_near(event.a, box, [&](std::uint32_t other) {
-        if (!bodies_->alive[other]) return;
-        for (const Disc& disc : discs) {
-            found |= touches(disc, other, separation_from(disc, other, {}));
+        if (others == Among::kAll) {
+            const Touching near_a = a_moves ? touching(a, image) : Touching{};
+            const Touching near_b = b_moves ? touching(b, image) : Touching{};
+            paths_.for_each_touching(near_a, near_b, now_s_ - from_s_, look);
         }
+        if (!strays_.empty()) strays_near_.for_each_near(event.a, moved, look);
     });
     return found;
 }
@@ -163,14 +148,12 @@ bool SweptEngine<Scalar, Space>::look_ahead(const Happening& event,
     if constexpr (Space::kHasImages) return false;
     if (is_immovable(event.a) || is_immovable(event.b)) return false;
     if (!strays_.empty() && (paths_.is_stray(event.a) || paths_.is_stray(event.b) ||
-                             is_pair_touched_by_strays(event))) {
+                             is_pair_touched(event, Among::kStrays))) {
         return false;
     }
     for (const int k : {0, 1}) {
         const std::uint32_t body = k == 0 ? event.a : event.b;
-        bool at_wall = false;
-        for_each_touched_wall(body, [&](std::uint32_t) { at_wall = true; });
-        if (at_wall) return false;
+        if (touches_wall(body)) return false;
         const Scalar reach = bodies_->radius_m[body] + paths_.largest_radius_m();
         Path path = path_of(body);
         if (hit) path.velocity_mps = k == 0 ? hit->velocity_1_mps : hit->velocity_2_mps;
