@@ -50,8 +50,13 @@ void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     }
     after_event(a, {b, event.image});
     after_event(b, {a, event.image});
-    place_and_predict(a, looked_ahead ? &turn_[0] : nullptr);
-    place_and_predict(b, looked_ahead ? &turn_[1] : nullptr);
+    if (looked_ahead) {
+        follow_and_predict(a, sight_[0]);
+        follow_and_predict(b, sight_[1]);
+    } else {
+        place_and_predict(a);
+        place_and_predict(b);
+    }
     if (hit) account(record_->contacts.back(), record_->audit);  // by now it is in memory
     count(1, 1);
 }
@@ -89,6 +94,7 @@ void SweptEngine<Scalar, Space>::fall(std::uint32_t body) {
     record_->falls.push_back(
         {bodies_->id_of(body), now_s_, bodies_->position_m[body], bodies_->velocity_mps[body]});
     bodies_->remove(body);
+    paths_.remove(body);
     after_event(body, {});
     count(1, 1);
 }

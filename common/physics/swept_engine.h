@@ -35,7 +35,7 @@ class SweptEngine {
     using Path = typename SweptPaths<Scalar>::Motion;
     using Course = typename SweptPaths<Scalar>::Course;
     using Touching = typename SweptPaths<Scalar>::Touching;
-    using Meetings = typename SweptPaths<Scalar>::Meetings;
+    using Sight = typename SweptPaths<Scalar>::Sight;
     static constexpr Scalar kLongAgo = -std::numeric_limits<Scalar>::infinity();
     struct Partner {
         std::uint32_t body = kNoBody;
@@ -70,52 +70,9 @@ class SweptEngine {
     void begin_look(std::uint32_t look, Scalar until_s);
     void sort_out_kept();
     bool run_look();
-    std::span<const Vec> places();
     void end_stretch(Scalar time_s);
     Scalar stretch_end() const;
     void shorten_stretch(std::uint32_t body);
-    void place(std::uint32_t body, const Course& course);
-    void fit_strays();
-    void predict_everybody();
-    template <bool kEqualRadii>
-    void predict_pairs();
-    void predict_all_walls();
-    void predict_images();
-    void predict_strays();
-    template <bool kAfterSet>
-    void predict(std::uint32_t body, const Course& course, const Meetings* seen = nullptr);
-    // Of those among the paths, who was seen, or, without that, who is found.
-    template <bool kAfterSet>
-    void predict_meetings(std::uint32_t body, const Course& course, const Meetings* seen = nullptr);
-    void keep(const Hold& hold) {
-        if (looks_ > 1) kept_.push_back(hold);
-    }
-    // Of those kept in earlier looks.
-    bool is_kept(const Hold& hold) const {
-        return !is_first_look_ && !kept_.empty() &&
-               std::binary_search(kept_.begin(), kept_.begin() + kept_before_, hold);
-    }
-    void predict_pair(std::uint32_t a, std::uint32_t b, Image image);
-    Path path_of(std::uint32_t body) const {
-        return {position_at(body, now_s_), bodies_->velocity_mps[body], bodies_->radius_m[body],
-                now_s_ - from_s_};
-    }
-    Course course_of(std::uint32_t body) const { return paths_.course_of(path_of(body)); }
-    template <bool kAfterSet>
-    void predict_walls(std::uint32_t body);
-    // By more than so much on each axis.
-    [[gnu::always_inline]] bool keeps_off_walls(const Vec& position_m, Scalar radius_m,
-                                                const Vec& by_m) const {
-        const auto& walls = *model_->walls;
-        const auto keeps_off = [&](int axis) {
-            const Scalar below = position_m[axis] - (walls.min_m[axis] + radius_m);
-            const Scalar above = (walls.max_m[axis] - radius_m) - position_m[axis];
-            return std::min(below, above) > by_m[axis];
-        };
-        return keeps_off(0) && keeps_off(1);
-    }
-    void predict_fall(std::uint32_t body);
-    void expect(const Happening& event);
     bool is_stale(const Happening& event) const {
         return event.count_a != known_[event.a].count ||
                (event.kind == EventKind::kBall && event.count_b != known_[event.b].count);
@@ -129,14 +86,62 @@ class SweptEngine {
         known_[body].partner = partner;
         known_[body].hit_s = now_s_;
     }
-    // Of one of a pair: its course after the hit, and whom it may meet on that.
-    struct Turn {
-        Course course{};
-        Meetings meetings;
-    };
-    // As it is now; or as it was seen to turn.
-    void place_and_predict(std::uint32_t body, const Turn* turn = nullptr);
+
+    // What may happen: swept_predictions.cpp.
+    void predict_everybody();
+    void place_and_predict(std::uint32_t body);
+    void follow_and_predict(std::uint32_t body, const Sight& sight);
     void place_and_predict_set();
+    std::span<const Vec> places();
+    void look_out();
+    void place(std::uint32_t body, const Course& course);
+    void fit_strays();
+    template <bool kEqualRadii>
+    void predict_pairs();
+    void predict_all_walls();
+    void predict_images();
+    void predict_strays();
+    template <bool kAfterSet>
+    void predict(std::uint32_t body, const Course& course);
+    template <bool kAfterSet>
+    void predict_meetings(std::uint32_t body, const Course& course);
+    void predict_pair(std::uint32_t a, std::uint32_t b, Image image);
+    void predict_from_now(std::uint32_t body, std::uint32_t other);
+    template <bool kAfterSet>
+    void predict_walls(std::uint32_t body);
+    void predict_fall(std::uint32_t body);
+    void expect(const Happening& event);
+    void expect_meeting(Scalar time_s, std::uint32_t one, std::uint32_t other);
+    // In the present look. What was due in an earlier one has happened there, or turned out to be
+    // nothing.
+    bool is_seen(Scalar time_s) const {
+        return !(time_s > seen_until_s_ || time_s > until_s_) &&
+               (is_first_look_ || !(time_s <= from_s_));
+    }
+    void keep(const Hold& hold) {
+        if (looks_ > 1) kept_.push_back(hold);
+    }
+    // Of those kept in earlier looks.
+    bool is_kept(const Hold& hold) const {
+        return !is_first_look_ && !kept_.empty() &&
+               std::binary_search(kept_.begin(), kept_.begin() + kept_before_, hold);
+    }
+    Path path_of(std::uint32_t body) const {
+        return {position_at(body, now_s_), bodies_->velocity_mps[body], bodies_->radius_m[body],
+                now_s_ - from_s_};
+    }
+    Course course_of(std::uint32_t body) const { return paths_.course_of(path_of(body)); }
+    // By more than so much on each axis.
+    [[gnu::always_inline]] bool keeps_off_walls(const Vec& position_m, Scalar radius_m,
+                                                const Vec& by_m) const {
+        const auto& walls = *model_->walls;
+        const auto keeps_off = [&](int axis) {
+            const Scalar below = position_m[axis] - (walls.min_m[axis] + radius_m);
+            const Scalar above = (walls.max_m[axis] - radius_m) - position_m[axis];
+            return std::min(below, above) > by_m[axis];
+        };
+        return keeps_off(0) && keeps_off(1);
+    }
 
     // What: swept_collisions.cpp.
     void process(const Happening& event);
@@ -240,7 +245,7 @@ class SweptEngine {
     EventQueue<Happening> queue_;
     ContactSet<Scalar> set_;
     std::vector<Happening> not_in_set_;
-    Turn turn_[2];  // of the first and of the second of a pair
+    Sight sight_[2];  // of the first and of the second of a pair
     std::vector<Partner> near_;
     std::vector<Hold> kept_;
     std::ptrdiff_t kept_before_ = 0;  // the present look

@@ -103,11 +103,12 @@ struct SweptKernels {
 #endif
     }
 
-    // test(path, lanes) gives which of these lanes are found. What several vectors find is written
-    // down together, since how much each of them finds is not to be foreseen.
-    template <typename Test>
+    // test(path, lanes) gives which of these lanes are found, and write(path, out) writes one of
+    // them down and returns where the next one goes. What several vectors find is written down
+    // together, since how much each of them finds is not to be foreseen.
+    template <typename Test, typename Write>
     static std::size_t search_window(const PathLanes& lanes, const CellWindow& window,
-                                     std::uint32_t* found, Test test) {
+                                     std::uint32_t* found, Test test, Write write) {
         constexpr std::uint32_t kTogether = 64 / kMostLanes;
         std::uint32_t* out = found;
         std::uint32_t starts[kTogether];
@@ -116,7 +117,7 @@ struct SweptKernels {
         const auto write_down = [&] {
             for (; all != 0; all &= all - 1) {
                 const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(all));
-                *out++ = starts[bit / kMostLanes] + bit % kMostLanes;
+                out = write(starts[bit / kMostLanes] + bit % kMostLanes, out);
             }
             vectors = 0;
         };
@@ -138,33 +139,50 @@ struct SweptKernels {
         return static_cast<std::size_t>(out - found);
     }
 
+    // Writes down all.
+    static auto write_bodies(const PathLanes& lanes) {
+        return [body = lanes.body](std::uint32_t path, std::uint32_t* out) {
+            *out = body[path];
+            return out + 1;
+        };
+    }
+
     static std::size_t find_meeting(const PathLanes& lanes, const CellWindow& window,
                                     const PathSearch& search, std::uint32_t* found) {
-        return find_meeting_in(lanes, window, search, found,
+        return find_meeting_in(lanes, window, search, found, write_bodies(lanes),
                                [](std::uint32_t, Vector, std::uint32_t) {});
     }
 
-    static std::size_t find_meeting_and_close(const PathLanes& lanes, const CellWindow& window,
-                                              const PathSearch& search, std::uint32_t* found,
-                                              std::uint32_t& close) {
-        const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
+    static Seen see(const PathLanes& lanes, const CellWindow& window, const SightSearch& search,
+                    std::uint32_t* found) {
+        const Vector radius = kEqualRadii ? Vector() : Pack::all(search.path.radius);
         const Vector limit = Pack::all(search.close_limit);
+        std::uint32_t close = 0, own_path = 0;
         const auto note = [&](std::uint32_t j, Vector squared, std::uint32_t among) {
             const Vector reach = squared_reach(lanes, j, radius, limit);
             close += count(Pack::at_most(squared, reach) & among);
         };
-        return find_meeting_in(lanes, window, search, found, note);
+        const auto write = [&, body = lanes.body](std::uint32_t path, std::uint32_t* out) {
+            const std::uint32_t other = body[path];
+            own_path = other == search.self ? path : own_path;
+            *out = other;
+            return out + static_cast<int>((other != search.self) & (other != search.opposite));
+        };
+        const std::size_t found_count =
+            find_meeting_in(lanes, window, search.path, found, write, note);
+        return {static_cast<std::uint32_t>(found_count), close, own_path};
     }
 
     // note(path, squares of the distances at that time, lanes)
-    template <typename Note>
+    template <typename Write, typename Note>
     static std::size_t find_meeting_in(const PathLanes& lanes, const CellWindow& window,
-                                       const PathSearch& search, std::uint32_t* found, Note note) {
+                                       const PathSearch& search, std::uint32_t* found, Write write,
+                                       Note note) {
         const Vector at_x = Pack::all(search.x), at_y = Pack::all(search.y);
         const Vector to_x = Pack::all(search.ahead_x), to_y = Pack::all(search.ahead_y);
         const Vector half_time = Pack::all(search.half_time), limit = Pack::all(search.limit);
         const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
-        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
+        const auto test = [&](std::uint32_t j, std::uint32_t among) {
             const Vector x = Pack::load(lanes.x + j), y = Pack::load(lanes.y + j);
             const Vector ahead_x = Pack::load(lanes.ahead_x + j);
             const Vector ahead_y = Pack::load(lanes.ahead_y + j);
@@ -177,13 +195,14 @@ struct SweptKernels {
             note(j, Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy)), among);
             const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
             return Pack::at_most(sum, squared_reach(lanes, j, radius, limit)) & among;
-        });
+        };
+        return search_window(lanes, window, found, test, write);
     }
 
     static std::size_t find_touching(const PathLanes& lanes, const CellWindow& window,
                                      const TouchSearch& search, std::uint32_t* found) {
         const Vector half_time = Pack::all(search.half_time);
-        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
+        const auto test = [&](std::uint32_t j, std::uint32_t among) {
             const Vector start_x = Pack::load(lanes.x + j), start_y = Pack::load(lanes.y + j);
             const Vector way_x = Pack::sub(Pack::load(lanes.ahead_x + j), start_x);
             const Vector way_y = Pack::sub(Pack::load(lanes.ahead_y + j), start_y);
@@ -197,11 +216,11 @@ struct SweptKernels {
                                      squared_reach(lanes, j, radius, Pack::all(search.limit[k])));
             };
             return (near(0) | near(1)) & among;
-        });
+        };
+        return search_window(lanes, window, found, test, write_bodies(lanes));
     }
 
-    static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_meeting_and_close,
-                                           find_touching};
+    static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_touching, see};
 };
 
 }  // namespace fts::physics

@@ -26,7 +26,8 @@ struct PathLanes {
     const float* y;
     const float* ahead_x;  // where twice the motion of the span leads
     const float* ahead_y;
-    const float* radius;         // not used when all are equal
+    const float* radius;  // not used when all are equal
+    const std::uint32_t* body;
     const std::uint32_t* first;  // of each cell, rows of `width` cells, and one more at the end
     std::uint32_t width, height;
     std::uint32_t paths;
@@ -67,7 +68,20 @@ struct PathSearch {
     float radius;            // not used when all are equal
     float half_time;
     float limit;
-    float close_limit;  // as `limit`, of the distance at that time
+};
+
+// A search that is for one of two that meet at that time; `radius`, `limit`: see PathSearch.
+struct SightSearch {
+    PathSearch path;
+    float close_limit;             // as `limit`, of the distance at that time
+    std::uint32_t self, opposite;  // the bodies
+};
+
+// Of such a search.
+struct Seen {
+    std::uint32_t count;  // of those found
+    std::uint32_t close;  // so many are within the close limit
+    std::uint32_t path;   // of `self`
 };
 
 // Who touches one of two discs at that time. A limit is the square of a distance when all radii
@@ -84,14 +98,13 @@ struct LaneKernels {
     // or all paths were looked at; returns how many. Some have no bits.
     std::size_t (*find_pairs)(const PathLanes&, const PairSearch&, PairCursor& cursor,
                               FoundPairs* found, std::size_t room);
-    // These write the indices of the paths they find, which may be all, and return how many.
+    // These write the bodies whose paths they find, which may be all, and return how many.
     std::size_t (*find_meeting)(const PathLanes&, const CellWindow&, const PathSearch&,
                                 std::uint32_t* found);
-    // The same, and adds to `close` how many are within the close limit.
-    std::size_t (*find_meeting_and_close)(const PathLanes&, const CellWindow&, const PathSearch&,
-                                          std::uint32_t* found, std::uint32_t& close);
     std::size_t (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&,
                                  std::uint32_t* found);
+    // As find_meeting, but for the two. There is room for one more than it finds.
+    Seen (*see)(const PathLanes&, const CellWindow&, const SightSearch&, std::uint32_t* found);
 };
 
 // Those of a level that the processor has. Above AVX2 there are none of their own, since few cells

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "common/physics/crowd_range.h"
-#include "common/physics/path_limits.h"
 
 namespace fts::physics {
 namespace {
@@ -263,26 +262,11 @@ template <typename Scalar>
 bool SweptPaths<Scalar>::follow(std::uint32_t body, const Course& course) {
     const std::uint32_t cell = cell_[body];
     if (cell == kNoCell) return false;
-    const float half = course.half_time, left = 0.5F - half;
-    const float from_middle = 0.5F + longest_way_;
-    const auto stays = [&](float from, float way, std::uint32_t index) {
-        const float middle = static_cast<float>(index) + 0.5F, to = from + way * left;
-        return static_cast<int>(std::abs(from - middle) <= from_middle) &
-               static_cast<int>(std::abs(to - middle) <= from_middle) &
-               static_cast<int>(std::abs(way) <= 2.0F * kWayWhenTurned * longest_way_) &
-               static_cast<int>(std::abs(way * left) <= 2.0F * longest_way_);
-    };
-    const int stay =
-        stays(course.x, course.way_x, cell % width_) & stays(course.y, course.way_y, cell / width_);
-    if (stay == 0) {
+    if (!stays(course, bounds_of(course), cell)) {
         remove(body);
         return false;
     }
-    const std::uint32_t path = path_of(body);
-    x_[path] = course.x - course.way_x * half;
-    y_[path] = course.y - course.way_y * half;
-    ahead_x_[path] = x_[path] + course.way_x;
-    ahead_y_[path] = y_[path] + course.way_y;
+    write_path(path_of(body), course);
     return true;
 }
 
@@ -306,9 +290,11 @@ std::pair<std::uint32_t, std::uint32_t> SweptPaths<Scalar>::cells_within(
 
 template <typename Scalar>
 PathLanes SweptPaths<Scalar>::lanes() const {
-    return {x_.data(),       y_.data(),      ahead_x_.data(),
-            ahead_y_.data(), radius_.data(), first_.data(),
-            width_,          height_,        static_cast<std::uint32_t>(body_.size())};
+    return {x_.data(),       y_.data(),
+            ahead_x_.data(), ahead_y_.data(),
+            radius_.data(),  body_.data(),
+            first_.data(),   width_,
+            height_,         static_cast<std::uint32_t>(body_.size())};
 }
 
 // Who asks may be large, or far from the grid, and its place in it then is coarse.
@@ -323,16 +309,36 @@ auto SweptPaths<Scalar>::close_to(float x, float y, float radius, Scalar toleran
 }
 
 template <typename Scalar>
-void SweptPaths<Scalar>::note_meetings(const Course& course, Scalar tolerance_m,
-                                       Meetings& meetings) {
-    const Close close = close_to(course.x, course.y, course.radius, tolerance_m);
-    PathSearch search = {};
-    const CellWindow cells = prepare(course, close.more, search);
-    search.close_limit = close.limit;
-    meetings.close = 0;
-    meetings.count =
-        kernels_->find_meeting_and_close(lanes_, cells, search, near_.data(), meetings.close);
-    for (std::size_t i = 0; i < meetings.count; ++i) meetings.bodies[i] = body_[near_[i]];
+Scalar SweptPaths<Scalar>::farthest_m() const {
+    const Scalar size_m = static_cast<Scalar>(std::max(width_, height_)) * cell_m_;
+    return origin_m_.cwiseAbs().maxCoeff() + size_m;
+}
+
+template <typename Scalar>
+void SweptPaths<Scalar>::look_out(Scalar tolerance_m, const Box<Scalar>& inside) {
+    close_ = close_to(0.0F, 0.0F, largest_radius_, tolerance_m);
+    const float blur = kNearBlurs * blur_;
+    inside_ = {cells_x(inside.min_x_m) + blur, cells_y(inside.min_y_m) + blur,
+               cells_x(inside.max_x_m) - blur, cells_y(inside.max_y_m) - blur};
+}
+
+template <typename Scalar>
+bool SweptPaths<Scalar>::see(std::uint32_t body, std::uint32_t opposite, const Motion& motion,
+                             Sight& sight) {
+    const std::uint32_t cell = cell_[body];
+    if (cell == kNoCell) return false;
+    sight.course = course_of(motion);
+    const Bounds bounds = bounds_of(sight.course);
+    if (!stays(sight.course, bounds, cell)) return false;
+    sight.keeps_inside = inside_.min_x <= bounds.min_x && bounds.max_x <= inside_.max_x &&
+                         inside_.min_y <= bounds.min_y && bounds.max_y <= inside_.max_y;
+    const SightSearch search = {search_for(sight.course), close_.limit, body, opposite};
+    const CellWindow cells = window_about(bounds, sight.course.radius, close_.more);
+    const Seen seen = kernels_->see(lanes_, cells, search, sight.others.data());
+    sight.count = seen.count;
+    sight.close = seen.close;
+    sight.path = seen.path;
+    return true;
 }
 
 template <typename Scalar>

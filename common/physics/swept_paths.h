@@ -17,6 +17,7 @@
 
 #include "common/physics/bodies.h"
 #include "common/physics/broadphase.h"
+#include "common/physics/path_limits.h"
 #include "common/physics/swept_lanes.h"
 #include "common/physics/swept_start.h"
 
@@ -55,6 +56,12 @@ class SweptPaths {
     // is larger.
     Scalar longest_way_m() const { return static_cast<Scalar>(longest_way_) * cell_m_; }
     Scalar largest_radius_m() const { return largest_radius_m_; }
+    // The largest coordinate of one that is no stray, and how far it may come in the span when it
+    // has turned.
+    Scalar farthest_m() const;
+    Scalar longest_way_turned_m() const {
+        return static_cast<Scalar>(kWayWhenTurned) * longest_way_m();
+    }
 
     // visit(a, b) once for each pair that may touch within the span, strays aside.
     template <typename Visit>
@@ -73,14 +80,22 @@ class SweptPaths {
     // a one; itself among them.
     template <typename Visit>
     void for_each_meeting(const Course& course, Visit&& visit);
-    // The same, written down, and of how many it is so close now that they may touch it: who is
-    // within `tolerance_m` does. Expects room for all.
-    struct Meetings {
-        std::vector<std::uint32_t> bodies;  // the first of them
-        std::size_t count = 0;
-        std::uint32_t close = 0;
+    // What one of two that meet now sees if it moves like this from now on.
+    struct Sight {
+        std::vector<std::uint32_t> others;  // the first of them may touch it, but for the other one
+        std::uint32_t count = 0;
+        std::uint32_t close = 0;    // so many may touch it now, itself and the other one among them
+        bool keeps_inside = false;  // of what it was told to keep inside
+        std::uint32_t path = 0;
+        Course course{};
     };
-    void note_meetings(const Course& course, Scalar tolerance_m, Meetings& meetings);
+    // Until the span ends, who is within `tolerance_m` of touching is close, and who keeps within
+    // `inside` keeps inside.
+    void look_out(Scalar tolerance_m, const Box<Scalar>& inside);
+    // False when it is a stray, or would become one. Expects room for all in the sight.
+    bool see(std::uint32_t body, std::uint32_t opposite, const Motion& motion, Sight& sight);
+    // It does move like this from now on.
+    void follow(const Sight& sight) { write_path(sight.path, sight.course); }
     // The same for a stray that stays within the box.
     template <typename Visit>
     void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
@@ -122,8 +137,17 @@ class SweptPaths {
         float more, limit;
     };
     Close close_to(float x, float y, float radius, Scalar tolerance_m) const;
-    [[gnu::always_inline]] CellWindow prepare(const Course& course, float more,
-                                              PathSearch& search) const;
+    // Where a course leads: between these.
+    struct Bounds {
+        float min_x, min_y, max_x, max_y;
+    };
+    [[gnu::always_inline]] Bounds bounds_of(const Course& course) const;
+    [[gnu::always_inline]] PathSearch search_for(const Course& course) const;
+    [[gnu::always_inline]] CellWindow window_about(const Bounds& course, float radius,
+                                                   float more) const;
+    [[gnu::always_inline]] bool stays(const Course& course, const Bounds& bounds,
+                                      std::uint32_t cell) const;
+    [[gnu::always_inline]] void write_path(std::uint32_t path, const Course& course);
     CellWindow prepare(const Touching& first, const Touching& second, Scalar since_s,
                        TouchSearch& search) const;
 
@@ -157,8 +181,10 @@ class SweptPaths {
     std::vector<std::uint32_t> body_;  // by path
     std::vector<std::uint32_t> strays_;
     std::vector<FoundPairs> found_;
-    std::vector<std::uint32_t> near_;  // paths that were found
+    std::vector<std::uint32_t> near_;  // who was found
     PathLanes lanes_ = {};
+    Close close_ = {};  // of those that are no strays
+    Bounds inside_ = {};
     const LaneKernels* kernels_ = nullptr;
     std::vector<Scalar> sample_;
 };
@@ -185,15 +211,47 @@ inline CellWindow SweptPaths<Scalar>::window(float min_x, float min_y, float max
 }
 
 template <typename Scalar>
-inline CellWindow SweptPaths<Scalar>::prepare(const Course& course, float more,
-                                              PathSearch& search) const {
+inline auto SweptPaths<Scalar>::bounds_of(const Course& course) const -> Bounds {
+    const float left = 0.5F - course.half_time;
+    const float x = course.x, y = course.y;
+    const float to_x = x + left * course.way_x, to_y = y + left * course.way_y;
+    return {std::min(x, to_x), std::min(y, to_y), std::max(x, to_x), std::max(y, to_y)};
+}
+
+template <typename Scalar>
+inline PathSearch SweptPaths<Scalar>::search_for(const Course& course) const {
     const auto [x, y, way_x, way_y, radius, half] = course;
-    const float left = 0.5F - half;
-    search = {x, y, x + 2.0F * left * way_x, y + 2.0F * left * way_y, radius, half, limit_, 0.0F};
+    const float left = 1.0F - 2.0F * half;
+    return {x, y, x + left * way_x, y + left * way_y, radius, half, limit_};
+}
+
+template <typename Scalar>
+inline CellWindow SweptPaths<Scalar>::window_about(const Bounds& course, float radius,
+                                                   float more) const {
     const float near = radius + largest_radius_ + longest_way_ + more + kNearBlurs * blur_;
-    const float to_x = x + left * way_x, to_y = y + left * way_y;
-    return window(std::min(x, to_x) - near, std::min(y, to_y) - near, std::max(x, to_x) + near,
-                  std::max(y, to_y) + near);
+    return window(course.min_x - near, course.min_y - near, course.max_x + near,
+                  course.max_y + near);
+}
+
+// Whether one that started in the cell is no stray with such a course, that leads there.
+template <typename Scalar>
+inline bool SweptPaths<Scalar>::stays(const Course& course, const Bounds& bounds,
+                                      std::uint32_t cell) const {
+    const float way = std::abs(course.way_x) + std::abs(course.way_y);
+    const float left = 0.5F - course.half_time, from_middle = 0.5F + longest_way_;
+    const std::uint32_t column = cell % width_, row = cell / width_;
+    const float x = 0.5F + static_cast<float>(column), y = 0.5F + static_cast<float>(row);
+    return way <= 2.0F * kWayWhenTurned * longest_way_ && left * way <= 2.0F * longest_way_ &&
+           x - bounds.min_x <= from_middle && bounds.max_x - x <= from_middle &&
+           y - bounds.min_y <= from_middle && bounds.max_y - y <= from_middle;
+}
+
+template <typename Scalar>
+inline void SweptPaths<Scalar>::write_path(std::uint32_t path, const Course& course) {
+    x_[path] = course.x - course.way_x * course.half_time;
+    y_[path] = course.y - course.way_y * course.half_time;
+    ahead_x_[path] = x_[path] + course.way_x;
+    ahead_y_[path] = y_[path] + course.way_y;
 }
 
 template <typename Scalar>
@@ -237,10 +295,10 @@ void SweptPaths<Scalar>::for_each_outside(const Box<Scalar>& box, Visit&& visit)
 template <typename Scalar>
 template <typename Visit>
 void SweptPaths<Scalar>::for_each_meeting(const Course& course, Visit&& visit) {
-    PathSearch search = {};
-    const CellWindow cells = prepare(course, 0.0F, search);
-    const std::size_t count = kernels_->find_meeting(lanes_, cells, search, near_.data());
-    for (std::size_t i = 0; i < count; ++i) visit(body_[near_[i]]);
+    const CellWindow cells = window_about(bounds_of(course), course.radius, 0.0F);
+    const std::size_t count =
+        kernels_->find_meeting(lanes_, cells, search_for(course), near_.data());
+    for (std::size_t i = 0; i < count; ++i) visit(near_[i]);
 }
 
 template <typename Scalar>
@@ -268,7 +326,7 @@ void SweptPaths<Scalar>::for_each_touching(const Touching& first, const Touching
     TouchSearch search = {};
     const CellWindow cells = prepare(first, second, since_s, search);
     const std::size_t count = kernels_->find_touching(lanes_, cells, search, near_.data());
-    for (std::size_t i = 0; i < count; ++i) visit(body_[near_[i]]);
+    for (std::size_t i = 0; i < count; ++i) visit(near_[i]);
 }
 
 extern template class SweptPaths<double>;

@@ -139,30 +139,26 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event, Among o
     return found;
 }
 
-// Whom the two may meet after the hit, noted in turn_ in the same pass that sees who is close to
-// them now: nearly always they are alone. False where they may not be, or are at a wall, or where
-// others are not all among the paths; then both is to be looked for as ever.
+// What the two see that are now where they hit, and go on as that says: nearly always they are
+// alone. False where they may not be, or are at a wall, or where others are not all among the
+// paths; then all is to be looked for as ever.
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::look_ahead(const Happening& event,
                                             const std::optional<Impact<Scalar>>& hit) {
     if constexpr (Space::kHasImages) return false;
     if (is_immovable(event.a) || is_immovable(event.b)) return false;
-    if (!strays_.empty() && (paths_.is_stray(event.a) || paths_.is_stray(event.b) ||
-                             is_pair_touched(event, Among::kStrays))) {
-        return false;
-    }
-    for (const int k : {0, 1}) {
-        const std::uint32_t body = k == 0 ? event.a : event.b;
-        if (touches_wall(body)) return false;
-        const Scalar reach = bodies_->radius_m[body] + paths_.largest_radius_m();
-        Path path = path_of(body);
-        if (hit) path.velocity_mps = k == 0 ? hit->velocity_1_mps : hit->velocity_2_mps;
-        turn_[k].course = paths_.course_of(path);
-        const Scalar tolerance = touch_tolerance_m(reach, extent_m(body));
-        paths_.note_meetings(turn_[k].course, tolerance, turn_[k].meetings);
-        if (turn_[k].meetings.close != 2) return false;  // more than the two
-    }
-    return true;
+    if (!strays_.empty() && is_pair_touched(event, Among::kStrays)) return false;
+    const Bodies<Scalar>& all = *bodies_;
+    const auto sees = [&](std::uint32_t body, std::uint32_t other, const Vec& velocity,
+                          Sight& sight) {
+        return paths_.see(body, other,
+                          {all.position_m[body], velocity, all.radius_m[body], now_s_ - from_s_},
+                          sight) &&
+               sight.close == 2 && (sight.keeps_inside || !touches_wall(body));
+    };
+    const std::uint32_t a = event.a, b = event.b;
+    return sees(a, b, hit ? hit->velocity_1_mps : all.velocity_mps[a], sight_[0]) &&
+           sees(b, a, hit ? hit->velocity_2_mps : all.velocity_mps[b], sight_[1]);
 }
 
 // Those of which something happened to one, or that were kept twice, are of no use any more.

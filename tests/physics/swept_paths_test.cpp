@@ -116,12 +116,18 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
     constexpr std::uint64_t kSeed = 63;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
-    std::size_t meetings = 0, touches = 0;
+    std::size_t meetings = 0, touches = 0, insiders = 0, outsiders = 0;
     for (const Crowd& crowd : kCrowds) {
         SCOPED_TRACE(&crowd - kCrowds);
         Bodies<double> all = crowd_of<double>(crowd, dice);
         SweptPaths<double> paths;
         paths.begin(all, all.position_m, crowd.largest_ratio == 1.0, 1.0);
+        const double low_m = crowd.from_m - 0.5 * crowd.room_m,
+                     high_m = crowd.from_m + crowd.room_m;
+        paths.look_out(0.0, {low_m, low_m, high_m, high_m});
+        const auto is_inside = [&](const Vec2d& place_m) {
+            return low_m <= place_m.minCoeff() && place_m.maxCoeff() <= high_m;
+        };
         double now_s = 0.0;
         const auto at = [&](std::uint32_t body) -> Vec2d {
             return all.position_m[body] + all.velocity_mps[body] * now_s;
@@ -132,16 +138,28 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
             const Vec2d turned = dice.in_box(1.5 * crowd.speed_mps);
             all.position_m[body] += (all.velocity_mps[body] - turned) * now_s;
             all.velocity_mps[body] = turned;
-            const auto course = paths.course_of({at(body), turned, all.radius_m[body], now_s});
-            SweptPaths<double>::Meetings noted = {std::vector<std::uint32_t>(all.slots())};
-            if (!paths.is_stray(body)) paths.note_meetings(course, 0.0, noted);
-            if (!paths.follow(body, course)) continue;
+            const SweptPaths<double>::Motion motion = {at(body), turned, all.radius_m[body], now_s};
+            const auto course = paths.course_of(motion);
+            const std::uint32_t opposite = (body + 1) % all.slots();
+            SweptPaths<double>::Sight sight = {std::vector<std::uint32_t>(all.slots())};
+            const bool sees = paths.see(body, opposite, motion, sight);
+            if (sees && body % 2 == 0) {
+                paths.follow(sight);
+            } else {
+                ASSERT_EQ(paths.follow(body, course), sees);
+            }
+            if (!sees) continue;
+            (sight.keeps_inside ? insiders : outsiders) += 1;
+            if (sight.keeps_inside) {
+                EXPECT_TRUE(is_inside(at(body)) && is_inside(at(body) + turned * (1.0 - now_s)));
+            }
             std::set<std::uint32_t> meeting, touching;
             paths.for_each_meeting(course, [&](std::uint32_t other) { meeting.insert(other); });
             paths.for_each_touching({at(body), all.radius_m[body], 0.0}, {}, now_s,
                                     [&](std::uint32_t other) { touching.insert(other); });
-            noted.bodies.resize(noted.count);
-            const std::set<std::uint32_t> noted_bodies(noted.bodies.begin(), noted.bodies.end());
+            sight.others.resize(sight.count);
+            const std::set<std::uint32_t> seen(sight.others.begin(), sight.others.end());
+            EXPECT_FALSE(seen.contains(body) || seen.contains(opposite));
             std::uint32_t touching_now = 1;  // itself
             for (const BodyId other_id : all.ids) {
                 const std::uint32_t other = other_id.index;
@@ -152,7 +170,7 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
                     time_until_contact<double>(apart, turned - all.velocity_mps[other], reach);
                 if (now_s + wait_s <= 1.0) {
                     EXPECT_TRUE(meeting.contains(other));
-                    EXPECT_TRUE(noted_bodies.contains(other));
+                    EXPECT_TRUE(seen.contains(other) || other == opposite);
                     ++meetings;
                 }
                 if (apart.norm() <= reach) {
@@ -161,11 +179,13 @@ TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
                     ++touching_now;
                 }
             }
-            EXPECT_GE(noted.close, touching_now);
+            EXPECT_GE(sight.close, touching_now);
         }
     }
     EXPECT_GT(meetings, 500U);
     EXPECT_GT(touches, 500U);
+    EXPECT_GT(insiders, 300U);
+    EXPECT_GT(outsiders, 300U);
 }
 
 // A place is as coarse as the stray that asks is large.
@@ -218,8 +238,8 @@ TEST(SweptPaths, leave_what_they_cannot_hold_to_others) {
 
 struct RowOfPaths {
     std::vector<float> x, y, ahead_x, ahead_y, radius;
-    std::vector<std::uint32_t> first;
-    PathLanes lanes;
+    std::vector<std::uint32_t> body, first;
+    PathLanes lanes = {};
 };
 
 // In rows of ten cells, of which paths start in the inner eight.
@@ -246,23 +266,18 @@ RowOfPaths rows_of_paths(std::uint32_t rows, bool equal_radii, Dice& dice) {
     for (std::vector<float>* lane : {&all.x, &all.y, &all.ahead_x, &all.ahead_y, &all.radius}) {
         lane->resize(paths + kMostLanes, std::numeric_limits<float>::quiet_NaN());
     }
-    all.lanes = {all.x.data(),
-                 all.y.data(),
-                 all.ahead_x.data(),
-                 all.ahead_y.data(),
-                 all.radius.data(),
-                 all.first.data(),
-                 kWidth,
-                 rows + 1,
-                 paths};
+    all.lanes = {all.x.data(),      all.y.data(), all.ahead_x.data(), all.ahead_y.data(),
+                 all.radius.data(), nullptr,      all.first.data(),   kWidth,
+                 rows + 1,          paths};
     if (equal_radii) all.lanes.radius = nullptr;
+    for (std::uint32_t path = 0; path < paths; ++path) all.body.push_back(3 * paths - path);
+    all.lanes.body = all.body.data();
     return all;
 }
 
 using Found = std::vector<Pair>;
 
-Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
-    Found all;
+void find_all(const LaneKernels& kernels, const PathLanes& lanes, Found& all) {
     const PairSearch search = {0.9F, 1, lanes.radius ? 0.01F : 0.1F, most_found(lanes.paths, 1)};
     std::vector<FoundPairs> room(search.most_of_one + 3);
     for (PairCursor cursor; cursor.path < lanes.paths;) {
@@ -281,26 +296,28 @@ Found all_found(const LaneKernels& kernels, const PathLanes& lanes) {
         for (std::size_t i = 0; i < count; ++i) all.push_back({0, met[i]});
     };
     const CellWindow window = {2, 0, 6, 3}, everywhere = {0, 0, lanes.width - 1, lanes.height - 1};
-    const PathSearch few = {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F, 2.0F};
+    const PathSearch few = {4.4F, 1.7F, 4.5F, 1.9F, 0.1F, 0.2F, 0.5F};
     PathSearch many = few;
     many.limit = 9.0F;
     note(kernels.find_meeting(lanes, window, few, met.data()));
     note(kernels.find_meeting(lanes, everywhere, many, met.data()));
-    for (const PathSearch& search_close : {few, many}) {
-        std::uint32_t close = 0;
-        note(kernels.find_meeting_and_close(lanes, window, search_close, met.data(), close));
-        const TouchSearch one = {{few.x, 0.0F},
-                                 {few.y, 0.0F},
-                                 {few.radius, 0.0F},
-                                 {few.close_limit, -1.0F},
-                                 few.half_time};
-        EXPECT_EQ(close, kernels.find_touching(lanes, window, one, met.data()));
-        EXPECT_GT(close, 0U);
+    for (const PathSearch& path_search : {few, many}) {
+        constexpr float kCloseLimit = 2.0F;
+        const std::size_t meeting = kernels.find_meeting(lanes, window, path_search, met.data());
+        ASSERT_GT(meeting, 2U);
+        const SightSearch sight_search = {path_search, kCloseLimit, met[1], met[2]};
+        const Seen seen = kernels.see(lanes, window, sight_search, met.data());
+        note(seen.count);
+        EXPECT_EQ(seen.count, meeting - 2);
+        EXPECT_EQ(lanes.body[seen.path], sight_search.self);
+        const TouchSearch one = {
+            {few.x, 0.0F}, {few.y, 0.0F}, {few.radius, 0.0F}, {kCloseLimit, -1.0F}, few.half_time};
+        EXPECT_EQ(seen.close, kernels.find_touching(lanes, window, one, met.data()));
+        EXPECT_GT(seen.close, 0U);
     }
     note(kernels.find_touching(
         lanes, window, {{4.1F, 4.6F}, {1.2F, 1.5F}, {0.1F, 0.2F}, {0.3F, 0.2F}, 0.3F}, met.data()));
     std::sort(all.begin(), all.end());
-    return all;
 }
 
 TEST(SweptLanes, find_the_same_on_every_instruction_set) {
@@ -310,13 +327,14 @@ TEST(SweptLanes, find_the_same_on_every_instruction_set) {
     for (const bool equal_radii : {true, false}) {
         for (std::uint32_t rows = 4; rows < 12; ++rows) {
             const RowOfPaths paths = rows_of_paths(rows, equal_radii, dice);
-            const Found plain =
-                all_found(lane_kernels(SimdLevel::kPlain, equal_radii), paths.lanes);
+            Found plain;
+            find_all(lane_kernels(SimdLevel::kPlain, equal_radii), paths.lanes, plain);
             EXPECT_GT(plain.size(), 100U);
             for (const SimdLevel level : {SimdLevel::kSse2, SimdLevel::kAvx2}) {
                 if (!is_supported(level)) continue;
-                EXPECT_EQ(all_found(lane_kernels(level, equal_radii), paths.lanes), plain)
-                    << "level " << static_cast<int>(level);
+                Found found;
+                find_all(lane_kernels(level, equal_radii), paths.lanes, found);
+                EXPECT_EQ(found, plain) << "level " << static_cast<int>(level);
             }
         }
     }
