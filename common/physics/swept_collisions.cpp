@@ -51,8 +51,7 @@ void SweptEngine<Scalar, Space>::collide_pair(const Happening& event) {
     after_event(a, {b, event.image});
     after_event(b, {a, event.image});
     if (looked_ahead) {
-        follow_and_predict(a, sight_[0]);
-        follow_and_predict(b, sight_[1]);
+        follow_and_predict(a, b);
     } else {
         place_and_predict(a);
         place_and_predict(b);

@@ -90,7 +90,7 @@ class SweptEngine {
     // What may happen: swept_predictions.cpp.
     void predict_everybody();
     void place_and_predict(std::uint32_t body);
-    void follow_and_predict(std::uint32_t body, const Sight& sight);
+    void follow_and_predict(std::uint32_t a, std::uint32_t b);
     void place_and_predict_set();
     std::span<const Vec> places();
     void look_out();
@@ -245,7 +245,7 @@ class SweptEngine {
     EventQueue<Happening> queue_;
     ContactSet<Scalar> set_;
     std::vector<Happening> not_in_set_;
-    Sight sight_[2];  // of the first and of the second of a pair
+    Sight sight_;  // of two that hit
     std::vector<Partner> near_;
     std::vector<Hold> kept_;
     std::ptrdiff_t kept_before_ = 0;  // the present look

@@ -103,106 +103,122 @@ struct SweptKernels {
 #endif
     }
 
-    // test(path, lanes) gives which of these lanes are found, and write(path, out) writes one of
-    // them down and returns where the next one goes. What several vectors find is written down
-    // together, since how much each of them finds is not to be foreseen.
-    template <typename Test, typename Write>
-    static std::size_t search_window(const PathLanes& lanes, const CellWindow& window,
-                                     std::uint32_t* found, Test test, Write write) {
-        constexpr std::uint32_t kTogether = 64 / kMostLanes;
-        std::uint32_t* out = found;
-        std::uint32_t starts[kTogether];
-        std::uint64_t all = 0;
-        std::uint32_t vectors = 0;
-        const auto write_down = [&] {
-            for (; all != 0; all &= all - 1) {
-                const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(all));
-                out = write(starts[bit / kMostLanes] + bit % kMostLanes, out);
-            }
-            vectors = 0;
-        };
+    // visit(j, lanes) for each vector of a window: those from path j on of which these lanes count.
+    template <typename Visit>
+    [[gnu::always_inline]] static void for_each_vector(const PathLanes& lanes,
+                                                       const CellWindow& window, Visit visit) {
         const std::uint32_t* cells = lanes.first + window.first_y * lanes.width;
         for (std::uint32_t row = window.first_y; row <= window.last_y; ++row) {
             const std::uint32_t last = cells[window.last_x + 1];
             for (std::uint32_t j = cells[window.first_x];; j += Pack::kWidth) {
-                const std::uint64_t bits = test(j, first_lanes(last - j));
-                all |= bits << (kMostLanes * vectors);
-                starts[vectors] = j;
-                if (++vectors == kTogether) [[unlikely]]
-                    write_down();
+                visit(j, first_lanes(last - j));
                 if (last - j <= Pack::kWidth) [[likely]]
                     break;
             }
             cells += lanes.width;
         }
+    }
+
+    // What several vectors find is written down together, since how much each of them finds is not
+    // to be foreseen.
+    struct Noted {
+        static constexpr std::uint32_t kVectors = 64 / kMostLanes;
+        std::uint32_t starts[kVectors] = {};
+        std::uint32_t vectors = 0;
+
+        bool is_full() const { return vectors == kVectors; }
+        std::uint64_t place(std::uint32_t bits) const {
+            return std::uint64_t{bits} << (kMostLanes * vectors);
+        }
+        // visit(path, bit)
+        template <typename Visit>
+        [[gnu::always_inline]] void take(std::uint64_t all, Visit visit) {
+            for (; all != 0; all &= all - 1) {
+                const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(all));
+                visit(starts[bit / kMostLanes] + bit % kMostLanes, bit);
+            }
+            vectors = 0;
+        }
+    };
+
+    // test(j, lanes) gives which of these lanes are found.
+    template <typename Test>
+    static std::size_t search_window(const PathLanes& lanes, const CellWindow& window,
+                                     std::uint32_t* found, Test test) {
+        std::uint32_t* out = found;
+        std::uint64_t all = 0;
+        Noted noted;
+        const auto write_down = [&] {
+            noted.take(all, [&](std::uint32_t path, std::uint32_t) { *out++ = lanes.body[path]; });
+            all = 0;
+        };
+        for_each_vector(lanes, window, [&](std::uint32_t j, std::uint32_t among) {
+            all |= noted.place(test(j, among));
+            noted.starts[noted.vectors++] = j;
+            if (noted.is_full()) [[unlikely]]
+                write_down();
+        });
         write_down();
         return static_cast<std::size_t>(out - found);
     }
 
-    // Writes down all.
-    static auto write_bodies(const PathLanes& lanes) {
-        return [body = lanes.body](std::uint32_t path, std::uint32_t* out) {
-            *out = body[path];
-            return out + 1;
-        };
-    }
+    // Those from j on: where they are at that time, and where twice their motion from then on
+    // leads.
+    struct Some {
+        Vector x, y, ahead_x, ahead_y;
+
+        Some(const PathLanes& lanes, std::uint32_t j, Vector half_time) {
+            const Vector from_x = Pack::load(lanes.x + j), from_y = Pack::load(lanes.y + j);
+            const Vector to_x = Pack::load(lanes.ahead_x + j);
+            const Vector to_y = Pack::load(lanes.ahead_y + j);
+            const Vector way_x = Pack::mul(Pack::sub(to_x, from_x), half_time);
+            const Vector way_y = Pack::mul(Pack::sub(to_y, from_y), half_time);
+            x = Pack::add(from_x, way_x);
+            y = Pack::add(from_y, way_y);
+            ahead_x = Pack::sub(to_x, way_x);
+            ahead_y = Pack::sub(to_y, way_y);
+        }
+    };
+
+    // One in each lane.
+    struct One {
+        Vector x, y, ahead_x, ahead_y;
+
+        explicit One(const PathSearch& search)
+            : x(Pack::all(search.x)),
+              y(Pack::all(search.y)),
+              ahead_x(Pack::all(search.ahead_x)),
+              ahead_y(Pack::all(search.ahead_y)) {}
+    };
+
+    struct Products {
+        Vector now, until_ahead;  // of the distance at that time, with itself and with that ahead
+
+        Products(const Some& some, const One& one) {
+            const Vector x = Pack::sub(some.x, one.x), y = Pack::sub(some.y, one.y);
+            const Vector ahead_x = Pack::sub(some.ahead_x, one.ahead_x);
+            const Vector ahead_y = Pack::sub(some.ahead_y, one.ahead_y);
+            now = Pack::add(Pack::mul(x, x), Pack::mul(y, y));
+            until_ahead = Pack::add(Pack::mul(x, ahead_x), Pack::mul(y, ahead_y));
+        }
+    };
 
     static std::size_t find_meeting(const PathLanes& lanes, const CellWindow& window,
                                     const PathSearch& search, std::uint32_t* found) {
-        return find_meeting_in(lanes, window, search, found, write_bodies(lanes),
-                               [](std::uint32_t, Vector, std::uint32_t) {});
-    }
-
-    static Seen see(const PathLanes& lanes, const CellWindow& window, const SightSearch& search,
-                    std::uint32_t* found) {
-        const Vector radius = kEqualRadii ? Vector() : Pack::all(search.path.radius);
-        const Vector limit = Pack::all(search.close_limit);
-        std::uint32_t close = 0, own_path = 0;
-        const auto note = [&](std::uint32_t j, Vector squared, std::uint32_t among) {
-            const Vector reach = squared_reach(lanes, j, radius, limit);
-            close += count(Pack::at_most(squared, reach) & among);
-        };
-        const auto write = [&, body = lanes.body](std::uint32_t path, std::uint32_t* out) {
-            const std::uint32_t other = body[path];
-            own_path = other == search.self ? path : own_path;
-            *out = other;
-            return out + static_cast<int>((other != search.self) & (other != search.opposite));
-        };
-        const std::size_t found_count =
-            find_meeting_in(lanes, window, search.path, found, write, note);
-        return {static_cast<std::uint32_t>(found_count), close, own_path};
-    }
-
-    // note(path, squares of the distances at that time, lanes)
-    template <typename Write, typename Note>
-    static std::size_t find_meeting_in(const PathLanes& lanes, const CellWindow& window,
-                                       const PathSearch& search, std::uint32_t* found, Write write,
-                                       Note note) {
-        const Vector at_x = Pack::all(search.x), at_y = Pack::all(search.y);
-        const Vector to_x = Pack::all(search.ahead_x), to_y = Pack::all(search.ahead_y);
+        const One one(search);
         const Vector half_time = Pack::all(search.half_time), limit = Pack::all(search.limit);
         const Vector radius = kEqualRadii ? Vector() : Pack::all(search.radius);
-        const auto test = [&](std::uint32_t j, std::uint32_t among) {
-            const Vector x = Pack::load(lanes.x + j), y = Pack::load(lanes.y + j);
-            const Vector ahead_x = Pack::load(lanes.ahead_x + j);
-            const Vector ahead_y = Pack::load(lanes.ahead_y + j);
-            const Vector way_x = Pack::mul(Pack::sub(ahead_x, x), half_time);
-            const Vector way_y = Pack::mul(Pack::sub(ahead_y, y), half_time);
-            const Vector dx = Pack::sub(Pack::add(x, way_x), at_x);
-            const Vector dy = Pack::sub(Pack::add(y, way_y), at_y);
-            const Vector ex = Pack::sub(Pack::sub(ahead_x, way_x), to_x);
-            const Vector ey = Pack::sub(Pack::sub(ahead_y, way_y), to_y);
-            note(j, Pack::add(Pack::mul(dx, dx), Pack::mul(dy, dy)), among);
-            const Vector sum = Pack::add(Pack::mul(dx, ex), Pack::mul(dy, ey));
-            return Pack::at_most(sum, squared_reach(lanes, j, radius, limit)) & among;
-        };
-        return search_window(lanes, window, found, test, write);
+        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
+            const Products products(Some(lanes, j, half_time), one);
+            const Vector limits = squared_reach(lanes, j, radius, limit);
+            return Pack::at_most(products.until_ahead, limits) & among;
+        });
     }
 
     static std::size_t find_touching(const PathLanes& lanes, const CellWindow& window,
                                      const TouchSearch& search, std::uint32_t* found) {
         const Vector half_time = Pack::all(search.half_time);
-        const auto test = [&](std::uint32_t j, std::uint32_t among) {
+        return search_window(lanes, window, found, [&](std::uint32_t j, std::uint32_t among) {
             const Vector start_x = Pack::load(lanes.x + j), start_y = Pack::load(lanes.y + j);
             const Vector way_x = Pack::sub(Pack::load(lanes.ahead_x + j), start_x);
             const Vector way_y = Pack::sub(Pack::load(lanes.ahead_y + j), start_y);
@@ -216,8 +232,54 @@ struct SweptKernels {
                                      squared_reach(lanes, j, radius, Pack::all(search.limit[k])));
             };
             return (near(0) | near(1)) & among;
+        });
+    }
+
+    static Seen see(const PathLanes& lanes, const CellWindow& window, const SightSearch& search,
+                    Meeting* found) {
+        const std::uint32_t body_a = search.bodies[0], body_b = search.bodies[1];
+        const PathSearch &path_a = search.paths[0], &path_b = search.paths[1];
+        const One a(path_a), b(path_b);
+        const Vector half_time = Pack::all(path_a.half_time);
+        const Vector limit = Pack::all(path_a.limit), close_limit = Pack::all(search.close_limit);
+        const Vector radius_a = kEqualRadii ? Vector() : Pack::all(path_a.radius);
+        const Vector radius_b = kEqualRadii ? Vector() : Pack::all(path_b.radius);
+        Seen seen = {};
+        Meeting* out = found;
+        std::uint64_t of_a = 0, of_b = 0;
+        Noted noted;
+        const auto write_down = [&] {
+            noted.take(of_a | of_b, [&](std::uint32_t path, std::uint32_t bit) {
+                const std::uint32_t other = lanes.body[path];
+                seen.paths[0] = other == body_a ? path : seen.paths[0];
+                seen.paths[1] = other == body_b ? path : seen.paths[1];
+                const std::uint64_t is_else = (other != body_a) & (other != body_b);
+                *out = {body_a, other};
+                out += is_else & of_a >> bit;
+                *out = {body_b, other};
+                out += is_else & of_b >> bit;
+            });
+            of_a = of_b = 0;
         };
-        return search_window(lanes, window, found, test, write_bodies(lanes));
+        for_each_vector(lanes, window, [&](std::uint32_t j, std::uint32_t among) {
+            const Some some(lanes, j, half_time);
+            const auto look = [&](const One& one, Vector radius, std::uint64_t& of_one,
+                                  std::uint32_t& close) {
+                const Products products(some, one);
+                const Vector close_limits = squared_reach(lanes, j, radius, close_limit);
+                close += count(Pack::at_most(products.now, close_limits) & among);
+                const Vector limits = squared_reach(lanes, j, radius, limit);
+                of_one |= noted.place(Pack::at_most(products.until_ahead, limits) & among);
+            };
+            look(a, radius_a, of_a, seen.close[0]);
+            look(b, radius_b, of_b, seen.close[1]);
+            noted.starts[noted.vectors++] = j;
+            if (noted.is_full()) [[unlikely]]
+                write_down();
+        });
+        write_down();
+        seen.count = static_cast<std::size_t>(out - found);
+        return seen;
     }
 
     static constexpr LaneKernels kTable = {find_pairs, find_meeting, find_touching, see};

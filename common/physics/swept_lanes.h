@@ -11,6 +11,7 @@
 // solver's; the limits that are passed in make up for it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -70,18 +71,23 @@ struct PathSearch {
     float limit;
 };
 
-// A search that is for one of two that meet at that time; `radius`, `limit`: see PathSearch.
+// A search for whom either of two bodies may meet, from one time on and with one limit.
 struct SightSearch {
-    PathSearch path;
-    float close_limit;             // as `limit`, of the distance at that time
-    std::uint32_t self, opposite;  // the bodies
+    std::array<std::uint32_t, 2> bodies;
+    PathSearch paths[2];
+    float close_limit;  // as `limit`, of the distance at that time
 };
 
-// Of such a search.
+// One of the two, and whom it may meet.
+struct Meeting {
+    std::uint32_t one, other;
+};
+
+// Of each of the two how many are within the close limit, and which path is its own.
 struct Seen {
-    std::uint32_t count;  // of those found
-    std::uint32_t close;  // so many are within the close limit
-    std::uint32_t path;   // of `self`
+    std::size_t count;  // of meetings
+    std::uint32_t close[2];
+    std::uint32_t paths[2];
 };
 
 // Who touches one of two discs at that time. A limit is the square of a distance when all radii
@@ -103,8 +109,9 @@ struct LaneKernels {
                                 std::uint32_t* found);
     std::size_t (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&,
                                  std::uint32_t* found);
-    // As find_meeting, but for the two. There is room for one more than it finds.
-    Seen (*see)(const PathLanes&, const CellWindow&, const SightSearch&, std::uint32_t* found);
+    // As find_meeting, for both of two that are within the window. They are not found themselves.
+    // There is room for two more meetings than it finds.
+    Seen (*see)(const PathLanes&, const CellWindow&, const SightSearch&, Meeting* found);
 };
 
 // Those of a level that the processor has. Above AVX2 there are none of their own, since few cells

@@ -323,21 +323,24 @@ void SweptPaths<Scalar>::look_out(Scalar tolerance_m, const Box<Scalar>& inside)
 }
 
 template <typename Scalar>
-bool SweptPaths<Scalar>::see(std::uint32_t body, std::uint32_t opposite, const Motion& motion,
+bool SweptPaths<Scalar>::see(const std::array<std::uint32_t, 2>& bodies, const Motion (&motions)[2],
                              Sight& sight) {
-    const std::uint32_t cell = cell_[body];
-    if (cell == kNoCell) return false;
-    sight.course = course_of(motion);
-    const Bounds bounds = bounds_of(sight.course);
-    if (!stays(sight.course, bounds, cell)) return false;
-    sight.keeps_inside = inside_.min_x <= bounds.min_x && bounds.max_x <= inside_.max_x &&
-                         inside_.min_y <= bounds.min_y && bounds.max_y <= inside_.max_y;
-    const SightSearch search = {search_for(sight.course), close_.limit, body, opposite};
-    const CellWindow cells = window_about(bounds, sight.course.radius, close_.more);
-    const Seen seen = kernels_->see(lanes_, cells, search, sight.others.data());
+    const std::uint32_t cell_a = cell_[bodies[0]], cell_b = cell_[bodies[1]];
+    if (cell_a == kNoCell || cell_b == kNoCell) return false;
+    const Course a = course_of(motions[0]), b = course_of(motions[1]);
+    const Bounds of_a = bounds_of(a), of_b = bounds_of(b);
+    if (!stays(a, of_a, cell_a) || !stays(b, of_b, cell_b)) return false;
+    sight.courses[0] = a;
+    sight.courses[1] = b;
+    const Bounds both = united(of_a, of_b);
+    const SightSearch search = {bodies, {search_for(a), search_for(b)}, close_.limit};
+    sight.keep_inside = inside_.min_x <= both.min_x && both.max_x <= inside_.max_x &&
+                        inside_.min_y <= both.min_y && both.max_y <= inside_.max_y;
+    const CellWindow cells = window_about(both, std::max(a.radius, b.radius), close_.more);
+    const Seen seen = kernels_->see(lanes_, cells, search, sight.meetings.data());
     sight.count = seen.count;
-    sight.close = seen.close;
-    sight.path = seen.path;
+    sight.are_alone = seen.close[0] == 2 && seen.close[1] == 2;
+    std::copy(seen.paths, seen.paths + 2, sight.paths);
     return true;
 }
 

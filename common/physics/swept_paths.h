@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -80,22 +81,25 @@ class SweptPaths {
     // a one; itself among them.
     template <typename Visit>
     void for_each_meeting(const Course& course, Visit&& visit);
-    // What one of two that meet now sees if it moves like this from now on.
+    // What two see that meet now, if they move like this from now on.
     struct Sight {
-        std::vector<std::uint32_t> others;  // the first of them may touch it, but for the other one
-        std::uint32_t count = 0;
-        std::uint32_t close = 0;    // so many may touch it now, itself and the other one among them
-        bool keeps_inside = false;  // of what it was told to keep inside
-        std::uint32_t path = 0;
-        Course course{};
+        std::vector<Meeting> meetings;  // the first of them; none of the two with each other
+        std::size_t count = 0;
+        bool are_alone = false;    // nobody else may touch one of them now
+        bool keep_inside = false;  // of what they were told to keep inside
+        std::uint32_t paths[2] = {};
+        Course courses[2] = {};
     };
     // Until the span ends, who is within `tolerance_m` of touching is close, and who keeps within
     // `inside` keeps inside.
     void look_out(Scalar tolerance_m, const Box<Scalar>& inside);
-    // False when it is a stray, or would become one. Expects room for all in the sight.
-    bool see(std::uint32_t body, std::uint32_t opposite, const Motion& motion, Sight& sight);
-    // It does move like this from now on.
-    void follow(const Sight& sight) { write_path(sight.path, sight.course); }
+    // False when one of them is a stray, or would become one. Expects room for twice as many
+    // meetings as there are bodies.
+    bool see(const std::array<std::uint32_t, 2>& bodies, const Motion (&motions)[2], Sight& sight);
+    // They do move like this from now on.
+    void follow(const Sight& sight) {
+        for (const int k : {0, 1}) write_path(sight.paths[k], sight.courses[k]);
+    }
     // The same for a stray that stays within the box.
     template <typename Visit>
     void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
@@ -142,6 +146,10 @@ class SweptPaths {
         float min_x, min_y, max_x, max_y;
     };
     [[gnu::always_inline]] Bounds bounds_of(const Course& course) const;
+    static Bounds united(const Bounds& a, const Bounds& b) {
+        return {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x),
+                std::max(a.max_y, b.max_y)};
+    }
     [[gnu::always_inline]] PathSearch search_for(const Course& course) const;
     [[gnu::always_inline]] CellWindow window_about(const Bounds& course, float radius,
                                                    float more) const;

@@ -287,18 +287,22 @@ void SweptEngine<Scalar, Space>::place_and_predict(std::uint32_t body) {
     predict<false>(body, course);
 }
 
-// Of one of two that have hit: its new way.
+// Of two that have hit: as they were seen.
 template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::follow_and_predict(std::uint32_t body, const Sight& sight) {
-    paths_.follow(sight);
-    for (std::uint32_t i = 0; i < sight.count; ++i) predict_from_now(body, sight.others[i]);
-    if (!strays_.empty()) {
-        strays_near_.for_each_near(body, swept_box(body), [&](std::uint32_t other) {
-            if (bodies_->alive[other]) predict_from_now(body, other);
-        });
+void SweptEngine<Scalar, Space>::follow_and_predict(std::uint32_t a, std::uint32_t b) {
+    paths_.follow(sight_);
+    for (std::size_t i = 0; i < sight_.count; ++i) {
+        predict_from_now(sight_.meetings[i].one, sight_.meetings[i].other);
     }
-    if (!sight.keeps_inside) predict_walls<false>(body);
-    if (model_->platform) predict_fall(body);
+    for (const std::uint32_t body : {a, b}) {
+        if (!strays_.empty()) {
+            strays_near_.for_each_near(body, swept_box(body), [&](std::uint32_t other) {
+                if (bodies_->alive[other]) predict_from_now(body, other);
+            });
+        }
+        if (!sight_.keep_inside) predict_walls<false>(body);
+        if (model_->platform) predict_fall(body);
+    }
 }
 
 // The body is where it is now, and something has just happened to it, but not to the other one.
@@ -336,21 +340,22 @@ Box<Scalar> SweptEngine<Scalar, Space>::swept_box(std::uint32_t body) const {
 template void SweptEngine<double, OpenSpace<double>>::predict_everybody();
 template void SweptEngine<double, OpenSpace<double>>::place_and_predict(std::uint32_t);
 template void SweptEngine<double, OpenSpace<double>>::follow_and_predict(std::uint32_t,
-                                                                         const Sight&);
+                                                                         std::uint32_t);
 template void SweptEngine<double, OpenSpace<double>>::place_and_predict_set();
 template void SweptEngine<float, OpenSpace<float>>::predict_everybody();
 template void SweptEngine<float, OpenSpace<float>>::place_and_predict(std::uint32_t);
-template void SweptEngine<float, OpenSpace<float>>::follow_and_predict(std::uint32_t, const Sight&);
+template void SweptEngine<float, OpenSpace<float>>::follow_and_predict(std::uint32_t,
+                                                                       std::uint32_t);
 template void SweptEngine<float, OpenSpace<float>>::place_and_predict_set();
 template void SweptEngine<double, TorusSpace<double>>::predict_everybody();
 template void SweptEngine<double, TorusSpace<double>>::place_and_predict(std::uint32_t);
 template void SweptEngine<double, TorusSpace<double>>::follow_and_predict(std::uint32_t,
-                                                                          const Sight&);
+                                                                          std::uint32_t);
 template void SweptEngine<double, TorusSpace<double>>::place_and_predict_set();
 template void SweptEngine<float, TorusSpace<float>>::predict_everybody();
 template void SweptEngine<float, TorusSpace<float>>::place_and_predict(std::uint32_t);
 template void SweptEngine<float, TorusSpace<float>>::follow_and_predict(std::uint32_t,
-                                                                        const Sight&);
+                                                                        std::uint32_t);
 template void SweptEngine<float, TorusSpace<float>>::place_and_predict_set();
 
 }  // namespace fts::physics

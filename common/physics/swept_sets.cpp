@@ -149,16 +149,14 @@ bool SweptEngine<Scalar, Space>::look_ahead(const Happening& event,
     if (is_immovable(event.a) || is_immovable(event.b)) return false;
     if (!strays_.empty() && is_pair_touched(event, Among::kStrays)) return false;
     const Bodies<Scalar>& all = *bodies_;
-    const auto sees = [&](std::uint32_t body, std::uint32_t other, const Vec& velocity,
-                          Sight& sight) {
-        return paths_.see(body, other,
-                          {all.position_m[body], velocity, all.radius_m[body], now_s_ - from_s_},
-                          sight) &&
-               sight.close == 2 && (sight.keeps_inside || !touches_wall(body));
-    };
     const std::uint32_t a = event.a, b = event.b;
-    return sees(a, b, hit ? hit->velocity_1_mps : all.velocity_mps[a], sight_[0]) &&
-           sees(b, a, hit ? hit->velocity_2_mps : all.velocity_mps[b], sight_[1]);
+    const Scalar since_s = now_s_ - from_s_;
+    const Path motions[2] = {{all.position_m[a], hit ? hit->velocity_1_mps : all.velocity_mps[a],
+                              all.radius_m[a], since_s},
+                             {all.position_m[b], hit ? hit->velocity_2_mps : all.velocity_mps[b],
+                              all.radius_m[b], since_s}};
+    return paths_.see({a, b}, motions, sight_) && sight_.are_alone &&
+           (sight_.keep_inside || !(touches_wall(a) || touches_wall(b)));
 }
 
 // Those of which something happened to one, or that were kept twice, are of no use any more.

@@ -111,81 +111,146 @@ TEST(SweptPaths, find_every_pair_that_touches_in_any_crowd) {
     }
 }
 
-// Half of the bodies turn at different times, as after collisions.
+// Bodies that turn at different times of a span, as after collisions.
+class TurningCrowd {
+  public:
+    TurningCrowd(const Crowd& crowd, Dice& dice)
+        : all(crowd_of<double>(crowd, dice)), speed_mps_(1.5 * crowd.speed_mps), dice_(dice) {
+        paths.begin(all, all.position_m, crowd.largest_ratio == 1.0, 1.0);
+    }
+    Vec2d at(std::uint32_t body) const {
+        return all.position_m[body] + all.velocity_mps[body] * now_s;
+    }
+    SweptPaths<double>::Motion turn(std::uint32_t body) {
+        const Vec2d turned = dice_.in_box(speed_mps_);
+        all.position_m[body] += (all.velocity_mps[body] - turned) * now_s;
+        all.velocity_mps[body] = turned;
+        return {at(body), turned, all.radius_m[body], now_s};
+    }
+    double gap_m(std::uint32_t a, std::uint32_t b) const {
+        return (at(a) - at(b)).norm() - (all.radius_m[a] + all.radius_m[b]);
+    }
+    bool meet(std::uint32_t a, std::uint32_t b) const {
+        const double reach = all.radius_m[a] + all.radius_m[b];
+        return now_s + time_until_contact<double>(
+                           at(a) - at(b), all.velocity_mps[a] - all.velocity_mps[b], reach) <=
+               1.0;
+    }
+    // visit(other) for all that are no strays.
+    template <typename Visit>
+    void for_each_other(std::uint32_t body, Visit&& visit) const {
+        for (const BodyId id : all.ids) {
+            if (id.index != body && !paths.is_stray(id.index)) visit(id.index);
+        }
+    }
+
+    Bodies<double> all;
+    SweptPaths<double> paths;
+    double now_s = 0.0;
+
+  private:
+    double speed_mps_;
+    Dice& dice_;
+};
+
 TEST(SweptPaths, find_who_meets_and_who_touches_a_body_that_turned) {
     constexpr std::uint64_t kSeed = 63;
     SCOPED_TRACE(kSeed);
     Dice dice(kSeed);
-    std::size_t meetings = 0, touches = 0, insiders = 0, outsiders = 0;
+    std::size_t meetings = 0, touches = 0;
     for (const Crowd& crowd : kCrowds) {
         SCOPED_TRACE(&crowd - kCrowds);
-        Bodies<double> all = crowd_of<double>(crowd, dice);
-        SweptPaths<double> paths;
-        paths.begin(all, all.position_m, crowd.largest_ratio == 1.0, 1.0);
-        const double low_m = crowd.from_m - 0.5 * crowd.room_m,
-                     high_m = crowd.from_m + crowd.room_m;
-        paths.look_out(0.0, {low_m, low_m, high_m, high_m});
-        const auto is_inside = [&](const Vec2d& place_m) {
-            return low_m <= place_m.minCoeff() && place_m.maxCoeff() <= high_m;
-        };
-        double now_s = 0.0;
-        const auto at = [&](std::uint32_t body) -> Vec2d {
-            return all.position_m[body] + all.velocity_mps[body] * now_s;
-        };
-        for (const BodyId id : all.ids) {
+        TurningCrowd turning(crowd, dice);
+        for (const BodyId id : turning.all.ids) {
             const std::uint32_t body = id.index;
-            now_s += 0.5 / static_cast<double>(crowd.balls);
-            const Vec2d turned = dice.in_box(1.5 * crowd.speed_mps);
-            all.position_m[body] += (all.velocity_mps[body] - turned) * now_s;
-            all.velocity_mps[body] = turned;
-            const SweptPaths<double>::Motion motion = {at(body), turned, all.radius_m[body], now_s};
+            turning.now_s += 0.5 / static_cast<double>(crowd.balls);
+            SweptPaths<double>& paths = turning.paths;
+            const auto motion = turning.turn(body);
             const auto course = paths.course_of(motion);
-            const std::uint32_t opposite = (body + 1) % all.slots();
-            SweptPaths<double>::Sight sight = {std::vector<std::uint32_t>(all.slots())};
-            const bool sees = paths.see(body, opposite, motion, sight);
-            if (sees && body % 2 == 0) {
-                paths.follow(sight);
-            } else {
-                ASSERT_EQ(paths.follow(body, course), sees);
-            }
-            if (!sees) continue;
-            (sight.keeps_inside ? insiders : outsiders) += 1;
-            if (sight.keeps_inside) {
-                EXPECT_TRUE(is_inside(at(body)) && is_inside(at(body) + turned * (1.0 - now_s)));
-            }
+            if (!paths.follow(body, course)) continue;
             std::set<std::uint32_t> meeting, touching;
             paths.for_each_meeting(course, [&](std::uint32_t other) { meeting.insert(other); });
-            paths.for_each_touching({at(body), all.radius_m[body], 0.0}, {}, now_s,
+            paths.for_each_touching({motion.position_m, motion.radius_m, 0.0}, {}, motion.since_s,
                                     [&](std::uint32_t other) { touching.insert(other); });
-            sight.others.resize(sight.count);
-            const std::set<std::uint32_t> seen(sight.others.begin(), sight.others.end());
-            EXPECT_FALSE(seen.contains(body) || seen.contains(opposite));
-            std::uint32_t touching_now = 1;  // itself
-            for (const BodyId other_id : all.ids) {
-                const std::uint32_t other = other_id.index;
-                if (other == body || paths.is_stray(other)) continue;
-                const Vec2d apart = at(body) - at(other);
-                const double reach = all.radius_m[body] + all.radius_m[other];
-                const double wait_s =
-                    time_until_contact<double>(apart, turned - all.velocity_mps[other], reach);
-                if (now_s + wait_s <= 1.0) {
+            turning.for_each_other(body, [&](std::uint32_t other) {
+                if (turning.meet(body, other)) {
                     EXPECT_TRUE(meeting.contains(other));
-                    EXPECT_TRUE(seen.contains(other) || other == opposite);
                     ++meetings;
                 }
-                if (apart.norm() <= reach) {
+                if (turning.gap_m(body, other) <= 0.0) {
                     EXPECT_TRUE(touching.contains(other));
                     ++touches;
-                    ++touching_now;
                 }
-            }
-            EXPECT_GE(sight.close, touching_now);
+            });
         }
     }
     EXPECT_GT(meetings, 500U);
     EXPECT_GT(touches, 500U);
-    EXPECT_GT(insiders, 300U);
-    EXPECT_GT(outsiders, 300U);
+}
+
+TEST(SweptPaths, show_two_that_hit_whom_they_meet_then_and_whether_they_are_alone) {
+    constexpr std::uint64_t kSeed = 66;
+    SCOPED_TRACE(kSeed);
+    Dice dice(kSeed);
+    std::size_t meetings = 0, alone = 0, together = 0, inside = 0, outside = 0;
+    for (const Crowd& crowd : kCrowds) {
+        SCOPED_TRACE(&crowd - kCrowds);
+        TurningCrowd turning(crowd, dice);
+        SweptPaths<double>& paths = turning.paths;
+        const double low_m = crowd.from_m - 0.5 * crowd.room_m;
+        const double high_m = crowd.from_m + crowd.room_m;
+        const auto is_inside = [&](const Vec2d& place_m) {
+            return low_m <= place_m.minCoeff() && place_m.maxCoeff() <= high_m;
+        };
+        paths.look_out(0.0, {low_m, low_m, high_m, high_m});
+        SweptPaths<double>::Sight sight = {std::vector<Meeting>(2 * turning.all.slots())};
+        for (const BodyId id : turning.all.ids) {
+            turning.now_s += 0.5 / static_cast<double>(crowd.balls);
+            const std::uint32_t a = id.index;
+            std::uint32_t b = a == 0 ? 1 : 0;  // or whoever is nearest
+            turning.for_each_other(a, [&](std::uint32_t other) {
+                if (turning.gap_m(a, other) < turning.gap_m(a, b)) b = other;
+            });
+            const SweptPaths<double>::Motion motions[2] = {turning.turn(a), turning.turn(b)};
+            const bool see = paths.see({a, b}, motions, sight);
+            if (see && dice.below(2) == 0) {
+                paths.follow(sight);
+            } else {
+                const bool a_stays = paths.follow(a, paths.course_of(motions[0]));
+                const bool b_stays = paths.follow(b, paths.course_of(motions[1]));
+                ASSERT_EQ(see, a_stays && b_stays);
+            }
+            if (!see) continue;
+            std::set<Pair> seen;
+            for (std::size_t i = 0; i < sight.count; ++i) {
+                const auto [one, other] = sight.meetings[i];
+                EXPECT_TRUE(one == a || one == b);
+                EXPECT_TRUE(other != a && other != b);
+                EXPECT_TRUE(seen.insert({one, other}).second) << "seen twice";
+            }
+            bool are_touched = false;
+            for (const std::uint32_t one : {a, b}) {
+                turning.for_each_other(one, [&](std::uint32_t other) {
+                    if (other == a || other == b) return;
+                    are_touched |= turning.gap_m(one, other) <= 0.0;
+                    if (!turning.meet(one, other)) return;
+                    EXPECT_TRUE(seen.contains({one, other}));
+                    ++meetings;
+                });
+                const Vec2d way_m = turning.all.velocity_mps[one] * (1.0 - turning.now_s);
+                if (!sight.keep_inside) continue;
+                EXPECT_TRUE(is_inside(turning.at(one)) && is_inside(turning.at(one) + way_m));
+            }
+            EXPECT_FALSE(sight.are_alone && are_touched);
+            if (turning.gap_m(a, b) <= 0.0) ++(sight.are_alone ? alone : together);
+            ++(sight.keep_inside ? inside : outside);
+        }
+    }
+    EXPECT_GT(meetings, 500U);
+    EXPECT_GT(alone, 200U);
+    EXPECT_GT(together, 200U);
+    EXPECT_GT(inside, 200U);
+    EXPECT_GT(outside, 200U);
 }
 
 // A place is as coarse as the stray that asks is large.
@@ -301,19 +366,40 @@ void find_all(const LaneKernels& kernels, const PathLanes& lanes, Found& all) {
     many.limit = 9.0F;
     note(kernels.find_meeting(lanes, window, few, met.data()));
     note(kernels.find_meeting(lanes, everywhere, many, met.data()));
-    for (const PathSearch& path_search : {few, many}) {
+    std::vector<Meeting> meetings(2 * lanes.paths);
+    for (const PathSearch& search_a : {few, many}) {
         constexpr float kCloseLimit = 2.0F;
-        const std::size_t meeting = kernels.find_meeting(lanes, window, path_search, met.data());
-        ASSERT_GT(meeting, 2U);
-        const SightSearch sight_search = {path_search, kCloseLimit, met[1], met[2]};
-        const Seen seen = kernels.see(lanes, window, sight_search, met.data());
-        note(seen.count);
-        EXPECT_EQ(seen.count, meeting - 2);
-        EXPECT_EQ(lanes.body[seen.path], sight_search.self);
-        const TouchSearch one = {
-            {few.x, 0.0F}, {few.y, 0.0F}, {few.radius, 0.0F}, {kCloseLimit, -1.0F}, few.half_time};
-        EXPECT_EQ(seen.close, kernels.find_touching(lanes, window, one, met.data()));
-        EXPECT_GT(seen.close, 0U);
+        PathSearch search_b = search_a;
+        search_b.x += 0.2F;
+        search_b.ahead_y += 0.1F;
+        // Two that are found by both searches.
+        std::vector<std::uint32_t> of_a(lanes.paths), of_b(lanes.paths), of_both;
+        of_a.resize(kernels.find_meeting(lanes, window, search_a, of_a.data()));
+        of_b.resize(kernels.find_meeting(lanes, window, search_b, of_b.data()));
+        for (const std::uint32_t body : of_a) {
+            if (std::find(of_b.begin(), of_b.end(), body) != of_b.end()) of_both.push_back(body);
+        }
+        ASSERT_GT(of_both.size(), 2U);
+        const SightSearch both = {{of_both[1], of_both[2]}, {search_a, search_b}, kCloseLimit};
+        const Seen seen = kernels.see(lanes, window, both, meetings.data());
+        std::vector<std::size_t> found(2);
+        for (std::size_t i = 0; i < seen.count; ++i) {
+            const auto [one, other] = meetings[i];
+            all.push_back({one, other});
+            ++found[one == both.bodies[0] ? 0 : 1];
+        }
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+            const PathSearch& search_k = both.paths[k];
+            EXPECT_EQ(found[k] + 2, kernels.find_meeting(lanes, window, search_k, met.data()));
+            EXPECT_EQ(lanes.body[seen.paths[k]], both.bodies[k]);
+            const TouchSearch one = {{search_k.x, 0.0F},
+                                     {search_k.y, 0.0F},
+                                     {search_k.radius, 0.0F},
+                                     {kCloseLimit, -1.0F},
+                                     search_k.half_time};
+            EXPECT_EQ(seen.close[k], kernels.find_touching(lanes, window, one, met.data()));
+            EXPECT_GT(seen.close[k], 0U);
+        }
     }
     note(kernels.find_touching(
         lanes, window, {{4.1F, 4.6F}, {1.2F, 1.5F}, {0.1F, 0.2F}, {0.3F, 0.2F}, 0.3F}, met.data()));
