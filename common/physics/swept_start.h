@@ -29,8 +29,8 @@ struct StartRules {
 
 // All but `body`. False when it is beyond the limits; then there is no cell.
 template <typename Scalar>
-bool find_start(const StartRules<Scalar>& rules, const Vec2<Scalar>& position_m,
-                const Vec2<Scalar>& velocity_mps, PathStart& start) {
+bool find_start_plainly(const StartRules<Scalar>& rules, const Vec2<Scalar>& position_m,
+                        const Vec2<Scalar>& velocity_mps, PathStart& start) {
     start.x = static_cast<float>((position_m.x() - rules.origin_m.x()) * rules.per_m);
     start.y = static_cast<float>((position_m.y() - rules.origin_m.y()) * rules.per_m);
     start.way_x = static_cast<float>(velocity_mps.x() * rules.per_mps);
@@ -46,14 +46,32 @@ bool find_start(const StartRules<Scalar>& rules, const Vec2<Scalar>& position_m,
 
 #if defined(__SSE2__)
 
-template <>
-inline bool find_start<double>(const StartRules<double>& rules, const Vec2<double>& position_m,
-                               const Vec2<double>& velocity_mps, PathStart& start) {
+// x, y, way_x and way_y.
+inline __m128 in_cells(const StartRules<double>& rules, const Vec2<double>& position_m,
+                       const Vec2<double>& velocity_mps) {
     const __m128d origin = _mm_loadu_pd(rules.origin_m.data());
     const __m128d place =
         _mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(position_m.data()), origin), _mm_set1_pd(rules.per_m));
     const __m128d way = _mm_mul_pd(_mm_loadu_pd(velocity_mps.data()), _mm_set1_pd(rules.per_mps));
-    const __m128 all = _mm_movelh_ps(_mm_cvtpd_ps(place), _mm_cvtpd_ps(way));
+    return _mm_movelh_ps(_mm_cvtpd_ps(place), _mm_cvtpd_ps(way));
+}
+
+inline __m128 in_cells(const StartRules<float>& rules, const Vec2<float>& position_m,
+                       const Vec2<float>& velocity_mps) {
+    const auto two = [](const Vec2<float>& both) {
+        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(both.data())));
+    };
+    const __m128 place =
+        _mm_mul_ps(_mm_sub_ps(two(position_m), two(rules.origin_m)), _mm_set1_ps(rules.per_m));
+    const __m128 way = _mm_mul_ps(two(velocity_mps), _mm_set1_ps(rules.per_mps));
+    return _mm_movelh_ps(place, way);
+}
+
+// The same.
+template <typename Scalar>
+bool find_start(const StartRules<Scalar>& rules, const Vec2<Scalar>& position_m,
+                const Vec2<Scalar>& velocity_mps, PathStart& start) {
+    const __m128 all = in_cells(rules, position_m, velocity_mps);
     _mm_storeu_ps(&start.x, all);
     const __m128 within = _mm_and_ps(_mm_cmpge_ps(all, _mm_loadu_ps(rules.low)),
                                      _mm_cmple_ps(all, _mm_loadu_ps(rules.high)));
@@ -63,6 +81,14 @@ inline bool find_start<double>(const StartRules<double>& rules, const Vec2<doubl
         static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_shuffle_epi32(cell, 1))) * rules.width +
         static_cast<std::uint32_t>(_mm_cvtsi128_si32(cell));
     return true;
+}
+
+#else
+
+template <typename Scalar>
+bool find_start(const StartRules<Scalar>& rules, const Vec2<Scalar>& position_m,
+                const Vec2<Scalar>& velocity_mps, PathStart& start) {
+    return find_start_plainly(rules, position_m, velocity_mps, start);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "common/physics/swept_paths.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/physics/swept_start.h"
 #include "common/physics/time_of_impact.h"
 #include "tests/physics/dice.h"
 
@@ -299,6 +301,43 @@ TEST(SweptPaths, leave_what_they_cannot_hold_to_others) {
     paths.begin(all, all.position_m, true, 1.0);
     paths.for_each_pair([](std::uint32_t, std::uint32_t) {});
     for (const std::uint32_t stray : paths.strays()) EXPECT_TRUE(paths.is_stray(stray));
+}
+
+template <typename Scalar>
+void expect_same_starts(std::uint64_t seed) {
+    SCOPED_TRACE(seed);
+    Dice dice(seed);
+    const StartRules<Scalar> rules = {
+        {Scalar(-3), Scalar(5)},    Scalar(0.7), Scalar(0.3), {2.0F, 2.0F, -1.0F, -1.0F},
+        {30.0F, 20.0F, 1.0F, 1.0F}, 34};
+    const Scalar odd[] = {std::numeric_limits<Scalar>::quiet_NaN(),
+                          std::numeric_limits<Scalar>::infinity(), Scalar(-1e30), Scalar(-0.0),
+                          std::numeric_limits<Scalar>::denorm_min()};
+    const auto within = [&](double half_width) -> Vec2<Scalar> {
+        Vec2<Scalar> both = dice.in_box(half_width).template cast<Scalar>();
+        if (dice.below(20) == 0) both[static_cast<int>(dice.below(2))] = odd[dice.below(5)];
+        return both;
+    };
+    std::size_t found = 0, refused = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec2<Scalar> place = within(40.0), velocity = within(3.5);
+        PathStart plain = {}, quick = {};
+        const bool is_plain = find_start_plainly(rules, place, velocity, plain);
+        ASSERT_EQ(find_start(rules, place, velocity, quick), is_plain);
+        ++(is_plain ? found : refused);
+        if (!is_plain) continue;
+        EXPECT_EQ(quick.cell, plain.cell);
+        for (const auto part : {&PathStart::x, &PathStart::y, &PathStart::way_x, &PathStart::way_y})
+            EXPECT_EQ(std::bit_cast<std::uint32_t>(quick.*part),
+                      std::bit_cast<std::uint32_t>(plain.*part));
+    }
+    EXPECT_GT(found, 1000U);
+    EXPECT_GT(refused, 1000U);
+}
+
+TEST(SweptPaths, start_at_the_same_bits_with_and_without_vector_instructions) {
+    expect_same_starts<double>(67);
+    expect_same_starts<float>(68);
 }
 
 struct RowOfPaths {
