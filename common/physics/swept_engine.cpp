@@ -68,7 +68,7 @@ void SweptEngine<Scalar, Space>::begin_knowledge() {
     places_.reserve(slots);
     ends_.reserve(slots);
     known_.resize(slots);
-    sight_.meetings.resize(2 * std::size_t{slots});
+    if constexpr (!Space::kHasImages) sight_.meetings.resize(2 * std::size_t{slots});
 }
 
 template <typename Scalar, typename Space>

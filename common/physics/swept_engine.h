@@ -68,7 +68,6 @@ class SweptEngine {
     bool run_stretch();
     std::uint32_t looks_for(Scalar span_s) const;
     void begin_look(std::uint32_t look, Scalar until_s);
-    void sort_out_kept();
     bool run_look();
     void end_stretch(Scalar time_s);
     Scalar stretch_end() const;
@@ -93,7 +92,7 @@ class SweptEngine {
     void follow_and_predict(std::uint32_t a, std::uint32_t b);
     void place_and_predict_set();
     std::span<const Vec> places();
-    void look_out();
+    void begin_sights();
     void place(std::uint32_t body, const Course& course);
     void fit_strays();
     template <bool kEqualRadii>
@@ -168,6 +167,7 @@ class SweptEngine {
     enum class Among : std::uint8_t { kAll, kStrays };
     bool is_pair_touched(const Happening& event, Among others);
     bool look_ahead(const Happening& event, const std::optional<Impact<Scalar>>& hit);
+    void sort_out_kept();
     void collide_set(const Happening& event);
     bool join_set(const Happening& event);
     void gather_simultaneous();

@@ -11,7 +11,6 @@
 // solver's; the limits that are passed in make up for it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -73,7 +72,7 @@ struct PathSearch {
 
 // A search for whom either of two bodies may meet, from one time on and with one limit.
 struct SightSearch {
-    std::array<std::uint32_t, 2> bodies;
+    std::uint32_t bodies[2];
     PathSearch paths[2];
     float close_limit;  // as `limit`, of the distance at that time
 };
@@ -83,7 +82,8 @@ struct Meeting {
     std::uint32_t one, other;
 };
 
-// Of each of the two how many are within the close limit, and which path is its own.
+// Of each of the two how many are within the close limit, itself among them, and which path is its
+// own: both are where their paths say, but for round-off within the limits.
 struct Seen {
     std::size_t count;  // of meetings
     std::uint32_t close[2];
@@ -110,7 +110,7 @@ struct LaneKernels {
     std::size_t (*find_touching)(const PathLanes&, const CellWindow&, const TouchSearch&,
                                  std::uint32_t* found);
     // As find_meeting, for both of two that are within the window. They are not found themselves.
-    // There is room for two more meetings than it finds.
+    // There is room for two more meetings than it finds, since it writes before it knows.
     Seen (*see)(const PathLanes&, const CellWindow&, const SightSearch&, Meeting* found);
 };
 

@@ -1,6 +1,7 @@
 #include "common/physics/swept_paths.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -38,8 +39,7 @@ Scalar sampled(std::vector<Scalar>& values, double q) {
 template <typename Scalar>
 void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, std::span<const Vec> places_m,
                                bool equal_radii, Scalar span_s) {
-    if (must_fit(bodies.ids.size(), equal_radii, span_s))
-        fit(bodies, places_m, equal_radii, span_s);
+    if (must_fit(bodies, equal_radii, span_s)) fit(bodies, places_m, equal_radii, span_s);
     ++spans_since_fit_;
     span_s_ = span_s;
     half_per_s_ = span_s > Scalar(0) ? Scalar(0.5) / span_s : Scalar(0);
@@ -60,8 +60,13 @@ void SweptPaths<Scalar>::begin(const Bodies<Scalar>& bodies, std::span<const Vec
 }
 
 template <typename Scalar>
-bool SweptPaths<Scalar>::must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const {
-    return spans_since_fit_ >= kSpansPerFit || equal_radii != equal_radii_ ||
+bool SweptPaths<Scalar>::must_fit(const Bodies<Scalar>& all, bool equal_radii,
+                                  Scalar span_s) const {
+    const std::size_t bodies = all.ids.size();
+    // Where all are equal, none is asked whether it is too large.
+    const bool is_other_radius =
+        equal_radii && bodies > 0 && all.radius_m[all.ids[0].index] != largest_radius_m_;
+    return is_other_radius || spans_since_fit_ >= kSpansPerFit || equal_radii != equal_radii_ ||
            span_s > static_cast<Scalar>(kLongestSpan) * fitted_span_s_ ||
            span_s < static_cast<Scalar>(kShortestSpan) * fitted_span_s_ ||
            strays_.size() > 2 * fitted_strays_ + bodies / 64 + 4 || bodies > 2 * fitted_bodies_ ||
@@ -315,7 +320,7 @@ Scalar SweptPaths<Scalar>::farthest_m() const {
 }
 
 template <typename Scalar>
-void SweptPaths<Scalar>::look_out(Scalar tolerance_m, const Box<Scalar>& inside) {
+void SweptPaths<Scalar>::begin_sights(Scalar tolerance_m, const Box<Scalar>& inside) {
     close_ = close_to(0.0F, 0.0F, largest_radius_, tolerance_m);
     const float blur = kNearBlurs * blur_;
     inside_ = {cells_x(inside.min_x_m) + blur, cells_y(inside.min_y_m) + blur,
@@ -333,11 +338,13 @@ bool SweptPaths<Scalar>::see(const std::array<std::uint32_t, 2>& bodies, const M
     sight.courses[0] = a;
     sight.courses[1] = b;
     const Bounds both = united(of_a, of_b);
-    const SightSearch search = {bodies, {search_for(a), search_for(b)}, close_.limit};
+    const SightSearch search = {
+        {bodies[0], bodies[1]}, {search_for(a), search_for(b)}, close_.limit};
     sight.keep_inside = inside_.min_x <= both.min_x && both.max_x <= inside_.max_x &&
                         inside_.min_y <= both.min_y && both.max_y <= inside_.max_y;
     const CellWindow cells = window_about(both, std::max(a.radius, b.radius), close_.more);
     const Seen seen = kernels_->see(lanes_, cells, search, sight.meetings.data());
+    assert(body_[seen.paths[0]] == bodies[0] && body_[seen.paths[1]] == bodies[1]);
     sight.count = seen.count;
     sight.are_alone = seen.close[0] == 2 && seen.close[1] == 2;
     std::copy(seen.paths, seen.paths + 2, sight.paths);

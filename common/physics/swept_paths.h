@@ -53,8 +53,8 @@ class SweptPaths {
 
     std::span<const std::uint32_t> strays() const { return strays_; }
     bool is_stray(std::uint32_t body) const { return cell_[body] == kNoCell; }
-    // Those that are not strays stay so near to their span's start on each axis, and none of them
-    // is larger.
+    // Those that are not strays stay so near to their span's start on each axis, or to the cell of
+    // that when they have turned, and none of them is larger.
     Scalar longest_way_m() const { return static_cast<Scalar>(longest_way_) * cell_m_; }
     Scalar largest_radius_m() const { return largest_radius_m_; }
     // The largest coordinate of one that is no stray, and how far it may come in the span when it
@@ -81,28 +81,28 @@ class SweptPaths {
     // a one; itself among them.
     template <typename Visit>
     void for_each_meeting(const Course& course, Visit&& visit);
-    // What two see that meet now, if they move like this from now on.
+    // The same for a stray that stays within the box.
+    template <typename Visit>
+    void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
+    // Whom two that have just hit may meet, and who is near them.
     struct Sight {
-        std::vector<Meeting> meetings;  // the first of them; none of the two with each other
+        std::vector<Meeting> meetings;  // the first `count`; none of the two with each other
         std::size_t count = 0;
         bool are_alone = false;    // nobody else may touch one of them now
         bool keep_inside = false;  // of what they were told to keep inside
         std::uint32_t paths[2] = {};
         Course courses[2] = {};
     };
-    // Until the span ends, who is within `tolerance_m` of touching is close, and who keeps within
-    // `inside` keeps inside.
-    void look_out(Scalar tolerance_m, const Box<Scalar>& inside);
-    // False when one of them is a stray, or would become one. Expects room for twice as many
-    // meetings as there are bodies.
+    // To be called before `see`, after each `begin`: who is within `tolerance_m` of touching is
+    // near, and who keeps within `inside` keeps inside.
+    void begin_sights(Scalar tolerance_m, const Box<Scalar>& inside);
+    // If they move like this from now on; they are where they were so far. False when one of them
+    // is a stray, or would become one. Expects room for twice as many meetings as there are bodies.
     bool see(const std::array<std::uint32_t, 2>& bodies, const Motion (&motions)[2], Sight& sight);
     // They do move like this from now on.
     void follow(const Sight& sight) {
         for (const int k : {0, 1}) write_path(sight.paths[k], sight.courses[k]);
     }
-    // The same for a stray that stays within the box.
-    template <typename Visit>
-    void for_each_in(const Box<Scalar>& box, Scalar since_s, Visit&& visit) const;
     // visit(other) for each that may touch one of two discs at this time; themselves among them.
     template <typename Visit>
     void for_each_touching(const Touching& first, const Touching& second, Scalar since_s,
@@ -113,7 +113,7 @@ class SweptPaths {
     // By how many blurs a search goes further than it need.
     static constexpr float kNearBlurs = 4.0F;
 
-    bool must_fit(std::size_t bodies, bool equal_radii, Scalar span_s) const;
+    bool must_fit(const Bodies<Scalar>& all, bool equal_radii, Scalar span_s) const;
     void fit(const Bodies<Scalar>& bodies, std::span<const Vec> places_m, bool equal_radii,
              Scalar span_s);
     void reserve(std::size_t bodies);

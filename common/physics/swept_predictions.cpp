@@ -21,7 +21,7 @@ constexpr Scalar kWallSlack = Scalar(16) * std::numeric_limits<Scalar>::epsilon(
 
 // So that round-off does not matter where many are left out together.
 template <typename Scalar>
-constexpr Scalar kWider = Scalar(1.01);
+constexpr Scalar kWiderThanRoundOff = Scalar(1.01);
 
 }  // namespace
 
@@ -29,7 +29,7 @@ template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_everybody() {
     paths_.begin(*bodies_, places(), model_->equal_radii, seen_until_s_ - from_s_);
     strays_.assign(paths_.strays().begin(), paths_.strays().end());
-    look_out();
+    if constexpr (!Space::kHasImages) begin_sights();
     if (!is_first_look_) {
         paths_.for_each_pair([&](std::uint32_t a, std::uint32_t b) {
             predict_pair(std::min(a, b), std::max(a, b), Image{});
@@ -49,19 +49,20 @@ void SweptEngine<Scalar, Space>::predict_everybody() {
 
 // Of those that are no strays: within which distance they may touch, and who keeps off all walls.
 template <typename Scalar, typename Space>
-void SweptEngine<Scalar, Space>::look_out() {
+void SweptEngine<Scalar, Space>::begin_sights() {
     constexpr Scalar kInfinite = std::numeric_limits<Scalar>::infinity();
     const Scalar radius = paths_.largest_radius_m(), look_s = seen_until_s_ - from_s_;
     const Scalar way =
         paths_.longest_way_turned_m() * (look_s > Scalar(0) ? span_s_ / look_s : Scalar(1));
     const Scalar tolerance = touch_tolerance_m(Scalar(2) * radius, paths_.farthest_m() + way);
-    const Scalar margin = kWider<Scalar> * radius + tolerance + kWallSlack<Scalar> * way;
+    const Scalar margin =
+        kWiderThanRoundOff<Scalar> * radius + tolerance + kWallSlack<Scalar> * way;
     Box<Scalar> inside = {-kInfinite, -kInfinite, kInfinite, kInfinite};
     if (model_->walls) {
         const Vec &low = model_->walls->min_m, &high = model_->walls->max_m;
         inside = {low.x() + margin, low.y() + margin, high.x() - margin, high.y() - margin};
     }
-    paths_.look_out(tolerance, inside);
+    paths_.begin_sights(tolerance, inside);
 }
 
 // Where everybody is when the look begins.
@@ -76,7 +77,8 @@ auto SweptEngine<Scalar, Space>::places() -> std::span<const Vec> {
 // Only who starts near a wall may reach it.
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_all_walls() {
-    const Scalar margin = kWider<Scalar> * (paths_.longest_way_m() + paths_.largest_radius_m());
+    const Scalar margin =
+        kWiderThanRoundOff<Scalar> * (paths_.longest_way_m() + paths_.largest_radius_m());
     const auto predict_one = [&](std::uint32_t body) {
         if (!is_immovable(body)) predict_walls<false>(body);
     };
@@ -112,7 +114,8 @@ void SweptEngine<Scalar, Space>::predict_pairs() {
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_images() {
     if constexpr (Space::kHasImages) {
-        const Scalar margin = kWider<Scalar> * (paths_.longest_way_m() + paths_.largest_radius_m());
+        const Scalar margin =
+            kWiderThanRoundOff<Scalar> * (paths_.longest_way_m() + paths_.largest_radius_m());
         Box<Scalar> where = space_.box();
         if (!is_first_look_) {
             for (const BodyId id : bodies_->ids) {
@@ -123,7 +126,7 @@ void SweptEngine<Scalar, Space>::predict_images() {
         }
         space_.cover_only({where.min_x_m - margin, where.min_y_m - margin, where.max_x_m + margin,
                            where.max_y_m + margin});
-        const Box<Scalar> inside = space_.without_images(kWider<Scalar> * margin);
+        const Box<Scalar> inside = space_.without_images(kWiderThanRoundOff<Scalar> * margin);
         paths_.for_each_outside(inside, [&](std::uint32_t body) {
             const Path path = path_of(body);
             space_.for_each_image(swept_box(body), [&](const Box<Scalar>&, Image image) {
@@ -300,12 +303,13 @@ void SweptEngine<Scalar, Space>::follow_and_predict(std::uint32_t a, std::uint32
                 if (bodies_->alive[other]) predict_from_now(body, other);
             });
         }
-        if (!sight_.keep_inside) predict_walls<false>(body);
+        if (model_->walls && !sight_.keep_inside) predict_walls<false>(body);
         if (model_->platform) predict_fall(body);
     }
 }
 
-// The body is where it is now, and something has just happened to it, but not to the other one.
+// As predict_pair, of one that has just hit a third: it can move, it is where it is now, and
+// nothing that was kept, and no partner, is the other one.
 template <typename Scalar, typename Space>
 void SweptEngine<Scalar, Space>::predict_from_now(std::uint32_t body, std::uint32_t other) {
     const Vec at = position_at(other, now_s_);

@@ -139,9 +139,9 @@ bool SweptEngine<Scalar, Space>::is_pair_touched(const Happening& event, Among o
     return found;
 }
 
-// What the two see that are now where they hit, and go on as that says: nearly always they are
-// alone. False where they may not be, or are at a wall, or where others are not all among the
-// paths; then all is to be looked for as ever.
+// Looks, with one search, whom the two will meet after this hit and whether anybody else touches
+// them now, which is hardly ever so. False where somebody may, or a wall, or where others are not
+// all among the paths; then all is to be looked for one by one.
 template <typename Scalar, typename Space>
 bool SweptEngine<Scalar, Space>::look_ahead(const Happening& event,
                                             const std::optional<Impact<Scalar>>& hit) {

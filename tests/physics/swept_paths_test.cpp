@@ -204,7 +204,7 @@ TEST(SweptPaths, show_two_that_hit_whom_they_meet_then_and_whether_they_are_alon
         const auto is_inside = [&](const Vec2d& place_m) {
             return low_m <= place_m.minCoeff() && place_m.maxCoeff() <= high_m;
         };
-        paths.look_out(0.0, {low_m, low_m, high_m, high_m});
+        paths.begin_sights(0.0, {low_m, low_m, high_m, high_m});
         SweptPaths<double>::Sight sight = {std::vector<Meeting>(2 * turning.all.slots())};
         for (const BodyId id : turning.all.ids) {
             turning.now_s += 0.5 / static_cast<double>(crowd.balls);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/physics/dice.h"
 #include "tests/physics/scenes.h"
 
 namespace fts::physics {
@@ -121,6 +122,48 @@ TEST(World, freed_slots_are_given_out_lowest_first_and_ids_stay_in_order) {
     EXPECT_EQ(world.add(ball_at(6, 5))->index, 8U);
     ASSERT_EQ(world.ids().size(), 9U);
     for (std::uint32_t i = 0; i < 9; ++i) EXPECT_EQ(world.ids()[i].index, i);
+}
+
+// On a square lattice, each on its way somewhere else, equal in radius.
+std::vector<BodyDef> lattice_of(int balls_per_side, double radius_m, Dice& dice) {
+    std::vector<BodyDef> balls;
+    for (int i = 0; i < balls_per_side * balls_per_side; ++i) {
+        const Vec2d place(i % balls_per_side, i / balls_per_side);
+        balls.push_back({6.0 * place, dice.in_box(8.0), radius_m, 1.0});
+    }
+    return balls;
+}
+
+TEST(World, balls_that_take_the_places_of_smaller_ones_hit_each_other_as_in_a_new_world) {
+    constexpr std::uint64_t kSeed = 71;
+    SCOPED_TRACE(kSeed);
+    for (const SolverKind kind : {SolverKind::kDiscrete, SolverKind::kSwept, SolverKind::kEvent}) {
+        for (const int per_side : {2, 15}) {
+            SCOPED_TRACE(testing::Message() << to_string(kind) << ", " << per_side << " a side");
+            Dice dice(kSeed);
+            Scene small, large;
+            small.bodies = lattice_of(per_side, 0.5, dice);
+            large.bodies = lattice_of(per_side, 2.0, dice);
+            World<double> world(small, {kind, 1}), fresh(large, {kind, 1});
+            for (int step = 0; step < 5; ++step) world.step(0.02);
+            const std::vector<BodyId> gone(world.ids().begin(), world.ids().end());
+            for (const BodyId id : gone) world.remove(id);
+            for (const BodyDef& ball : large.bodies) ASSERT_TRUE(world.add(ball));
+            const std::uint64_t before = world.audit().ball_collisions;
+            for (int step = 0; step < 20; ++step) {
+                world.step(0.02);
+                fresh.step(0.02);
+            }
+            EXPECT_EQ(world.audit().ball_collisions - before, fresh.audit().ball_collisions);
+            EXPECT_GT(fresh.audit().ball_collisions, 0U);
+            ASSERT_EQ(world.ids().size(), fresh.ids().size());
+            for (std::size_t i = 0; i < fresh.ids().size(); ++i) {
+                const Vec2d off =
+                    world.position_m(world.ids()[i]) - fresh.position_m(fresh.ids()[i]);
+                EXPECT_LT(off.norm(), 1e-9);
+            }
+        }
+    }
 }
 
 TEST(World, a_reused_slot_does_not_inherit_the_control) {
