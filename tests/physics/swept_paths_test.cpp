@@ -356,7 +356,8 @@ RowOfPaths rows_of_paths(std::uint32_t rows, bool equal_radii, Dice& dice) {
         if (column == 0 || column == kWidth - 1 || row == rows) continue;
         const auto count = static_cast<int>(std::pow(dice.between(0.0, 3.3), 3.0));
         for (int i = 0; i < count; ++i) {
-            const Vec2d place(column + dice.between(0.0, 0.999), row + dice.between(0.0, 0.999));
+            const double x = column + dice.between(0.0, 0.999);
+            const Vec2d place(x, row + dice.between(0.0, 0.999));
             const Vec2d ahead = place + dice.in_box(0.3);
             all.x.push_back(static_cast<float>(place.x()));
             all.y.push_back(static_cast<float>(place.y()));
@@ -418,8 +419,9 @@ void find_all(const LaneKernels& kernels, const PathLanes& lanes, Found& all) {
         for (const std::uint32_t body : of_a) {
             if (std::find(of_b.begin(), of_b.end(), body) != of_b.end()) of_both.push_back(body);
         }
-        ASSERT_GT(of_both.size(), 2U);
-        const SightSearch both = {{of_both[1], of_both[2]}, {search_a, search_b}, kCloseLimit};
+        ASSERT_GE(of_both.size(), 2U);
+        const SightSearch both = {
+            {of_both.front(), of_both.back()}, {search_a, search_b}, kCloseLimit};
         const Seen seen = kernels.see(lanes, window, both, meetings.data());
         std::vector<std::size_t> found(2);
         for (std::size_t i = 0; i < seen.count; ++i) {
